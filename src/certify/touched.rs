@@ -49,6 +49,15 @@ impl Touched {
         nodes.sort_unstable();
         Self { strokes, turns, nodes }
     }
+
+    /// The edges of the touched strokes.
+    pub fn edges<'n>(&self, network: &'n Network) -> impl Iterator<Item = u32> + use<'_, 'n> {
+        let strokes = self.strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize));
+        strokes
+            .flat_map(|stroke| network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize))
+            .flatten()
+            .copied()
+    }
 }
 
 /// Places near nodes at which something differs.

@@ -58,7 +58,7 @@ use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind,
 use crate::osm::{LonLat, StringId, StringPool};
 
 /// Values of a way that all its edges share.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Road {
     /// OSM way id.
     pub way_id: i64,
@@ -89,7 +89,7 @@ pub struct Road {
 }
 
 /// A directed edge of the network.
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Edge {
     /// Stable id: the same way, node pair and direction give the same id in the next extract. Positive.
     pub id: i64,

@@ -108,7 +108,7 @@ pub fn assemble(
     };
     let Divided { tasks, extract_blake3, .. } = divided;
     let results = Results { each, tasks: *tasks, extract_blake3, failed: BTreeSet::new() };
-    making.run(Whom::Chosen(&|_| Ok(job.models.clone())), Some(results), reporter)
+    making.run(Whom::Chosen(&|_| Ok(job.models.clone())), Some(results), reporter).map(|made| made.summary)
 }
 
 /// Whether what is left of a task's work is unknown because the task failed. `failed` is `None` where this machine certifies.

@@ -12,7 +12,7 @@ use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{Finished, Kept, PartOfWork, Stage, VehicleNo, Writer};
+use crate::store::{Finished, PartOfWork, Stage, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -84,7 +84,7 @@ impl Certifying<'_> {
         if let Some(earlier) = self.earlier {
             for stroke in earlier.strokes(network).filter(|&stroke| left.take(stroke)) {
                 for (edge, measure, kept) in earlier.edges(network, stroke) {
-                    outcome.edge(edge, measure, without_corridor(measure, &kept));
+                    outcome.edge(edge, measure, without_corridor(measure, kept.iter().map(|kept| kept.verdict())));
                     for (vehicle, kept) in kept.into_iter().enumerate() {
                         outcome.count(kept.verdict());
                         verdicts.set(vehicle, edge, kept.verdict());
@@ -206,14 +206,17 @@ impl Certifying<'_> {
     }
 }
 
-/// Why an edge that is taken over has no corridor, as far as its rows tell.
-fn without_corridor(measure: EdgeMeasure, kept: &[&Kept]) -> Option<UnknownReason> {
-    let reason = |kept: &&Kept| match kept.verdict() {
+/// Why an edge that is taken over has no corridor, as far as its verdicts tell.
+pub(super) fn without_corridor(
+    measure: EdgeMeasure,
+    mut verdicts: impl Iterator<Item = Verdict>,
+) -> Option<UnknownReason> {
+    let reason = |verdict| match verdict {
         Verdict::Unknown(reason @ (UnknownReason::Geometry | UnknownReason::Width)) => Some(reason),
         _ => None,
     };
     let missing = measure == EdgeMeasure::default();
-    kept.iter().find_map(reason).or(missing.then_some(UnknownReason::Geometry))
+    verdicts.find_map(reason).or(missing.then_some(UnknownReason::Geometry))
 }
 
 /// What is not finished yet: indices in the order in which they are to be done.

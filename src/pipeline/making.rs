@@ -8,12 +8,15 @@ use std::time::Instant;
 use crate::network::Portion;
 use crate::osm::Backdrop;
 use crate::osm::facts::Countries;
+use crate::osm::pbf::HeaderInfo;
 use crate::reporter::Reporter;
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{Database, MapChanges, Run, VehicleNo};
+use crate::turns::turn_facts;
 use crate::verdict::{UnknownReason, Verdict};
 
+use super::amending::amendment;
 use super::assemble::Results;
 use super::certifying::Certifying;
 use super::identity::{self, Identity};
@@ -46,6 +49,13 @@ pub(super) enum Whom<'a> {
     Earlier(Older<'a>, Vec<Model>),
 }
 
+/// What a run made.
+pub(super) struct Made {
+    pub(super) summary: Summary,
+    /// Whether rows of an earlier database were changed in place: then all of its sets are up to date, and not only those of the run's vehicles.
+    pub(super) in_place: bool,
+}
+
 impl Making<'_> {
     /// Makes the database and puts it in place. With `results`, other machines have certified the portions.
     pub(super) fn run(
@@ -53,7 +63,7 @@ impl Making<'_> {
         whom: Whom<'_>,
         mut results: Option<Results<'_>>,
         reporter: &dyn Reporter,
-    ) -> Result<Summary, RunError> {
+    ) -> Result<Made, RunError> {
         let started = (self.now)();
         let mut summary = Summary::default();
         // Created first, so that a path that cannot be written is reported before the work.
@@ -73,16 +83,22 @@ impl Making<'_> {
         let mut behind = |things: &[Backdrop]| Ok(writer.backdrop(things)?);
         let division = (self.edges_at_once, whole);
         let mut read = || read_roads(source, self.countries, division, &mut behind, reporter, &mut summary);
-        let (mut roads, Origin { header, blake3: hash, segments }, models, stored) = match whom {
+        let (mut roads, Origin { header, blake3: hash, segments }, models, mut stored, facts) = match whom {
             Whom::Chosen(choose) => {
                 let (roads, origin) = read()?;
                 let models = choose(&roads.countries())?;
-                (roads, origin, models, None)
+                (roads, origin, models, None, Vec::new())
             }
             Whom::Earlier(older, models) => {
+                let read = || {
+                    let (roads, origin) = read()?;
+                    let network = roads.only().filter(|_| self.settings.turns).map(|portion| &portion.network);
+                    let facts = network.map_or_else(Vec::new, |network| turn_facts(network, &self.settings.kerbs));
+                    Ok::<_, RunError>((roads, origin, facts))
+                };
                 let (read, stored) = self.beside(older, &models, read, reporter)?;
-                let (roads, origin) = read?;
-                (roads, origin, models, stored)
+                let (roads, origin, facts) = read?;
+                (roads, origin, models, stored, facts)
             }
         };
         summary.stages.extend(stored.iter().map(Stored::stage));
@@ -106,17 +122,6 @@ impl Making<'_> {
         for model in &models {
             identity.add(&record(&model.vehicle)?.definition);
         }
-        let earlier = match (stored, roads.whole()) {
-            (Some(stored), Some(network)) => {
-                let found = Earlier::find(stored, network, self.settings.turns);
-                if found.is_none() {
-                    reporter
-                        .note("all is certified again: the older database lacks certificates, or its edges are others");
-                }
-                found
-            }
-            _ => None,
-        };
         let mut finished = writer.finished(&identity.finish())?;
         if let Some(results) = &mut results {
             let first = self.inputs.first().copied().unwrap_or(Path::new(""));
@@ -129,6 +134,37 @@ impl Making<'_> {
             }
             (true, false) => {}
         }
+        if finished.is_empty()
+            && let (Some(stored), Some(portion)) = (&mut stored, roads.only())
+            && let Some((mut amendment, account)) =
+                amendment(stored, portion, &facts, self.settings, (reporter, &mut summary))
+        {
+            summary.account.extend(roads.account());
+            summary.account.extend(account);
+            let clock = Instant::now();
+            reporter.begin("store", 0);
+            writer.areas(roads.areas());
+            writer.account(&summary.account);
+            writer.map_changes(std::mem::take(&mut self.changes));
+            let changed = amendment.sets.iter().map(|set| set.edges.len() + set.turns.len()).sum::<usize>();
+            writer.amend(&mut amendment, &self.run_record(&header, hash, started))?;
+            finished.remove()?;
+            reporter.end();
+            summary.stage("store", clock, changed as u64, "certificates");
+            summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
+            return Ok(Made { summary, in_place: true });
+        }
+        let earlier = match (stored, roads.whole()) {
+            (Some(stored), Some(network)) => {
+                let found = Earlier::find(stored, network, self.settings)?;
+                if found.is_none() {
+                    reporter
+                        .note("all is certified again: the older database lacks certificates, or its edges are others");
+                }
+                found
+            }
+            _ => None,
+        };
         let numbers: Vec<VehicleNo> =
             models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<_, RunError>>()?;
         let certifying = Certifying {
@@ -160,11 +196,23 @@ impl Making<'_> {
             if segments.is_some() {
                 parameters.insert(source::SOURCE.to_owned(), source::OVERTURE.into());
             }
-            parameters.insert(identity::ROAD_RULES.to_owned(), identity::of_rules(self.countries).into());
         }
         writer.map_changes(std::mem::take(&mut self.changes));
         writer.segments(segments.unwrap_or_default());
-        writer.finish(&Run {
+        writer.finish(&self.run_record(&header, hash, started))?;
+        finished.remove()?;
+        reporter.end();
+        summary.stage("store", clock, certificates, "certificates");
+        summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
+        Ok(Made { summary, in_place: false })
+    }
+
+    /// The record of the run, which ends now.
+    fn run_record(&mut self, header: &HeaderInfo, hash: String, started: String) -> Run {
+        if let Some(parameters) = self.parameters.as_object_mut() {
+            parameters.insert(identity::ROAD_RULES.to_owned(), identity::of_rules(self.countries).into());
+        }
+        Run {
             command: self.command.to_owned(),
             input_name: source::name(self.inputs),
             input_blake3: Some(hash),
@@ -173,22 +221,17 @@ impl Making<'_> {
             started,
             finished: (self.now)(),
             parameters: self.parameters.to_string(),
-        })?;
-        finished.remove()?;
-        reporter.end();
-        summary.stage("store", clock, certificates, "certificates");
-        summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
-        Ok(summary)
+        }
     }
 
     /// Reads roads, and beside that what an earlier database has, if any of it can stand.
-    fn beside<T>(
+    fn beside<'d, T>(
         &self,
-        older: Older<'_>,
+        older: Older<'d>,
         models: &[Model],
         read: impl FnOnce() -> T,
         reporter: &dyn Reporter,
-    ) -> Result<(T, Option<Stored>), RunError> {
+    ) -> Result<(T, Option<Stored<'d>>), RunError> {
         if let Some(why) = reuse::differs(older.database, models, self)? {
             reporter.note(&format!("all is certified again: {why}"));
             return Ok((read(), None));

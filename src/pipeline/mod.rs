@@ -4,6 +4,8 @@
 //! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
+mod again;
+mod amending;
 mod assemble;
 mod certifying;
 mod evidence;
@@ -23,8 +25,9 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+pub use again::VerdictChanges;
 pub use assemble::{Assemble, TaskResult, assemble};
-pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What, change_evidence};
+pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, What, change_evidence};
 pub use roads::EDGES_AT_ONCE;
 pub use select::{Selection, own_countries, selected};
 pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, StrokesDone, Task, TaskError, divide};
@@ -160,7 +163,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
         let vehicles = selected(ask.catalogue, ask.selection, roads)?;
         vehicles.iter().map(|vehicle| Ok(Model::new(vehicle)?)).collect()
     };
-    making.run(Whom::Chosen(&choose), None, reporter)
+    Ok(making.run(Whom::Chosen(&choose), None, reporter)?.summary)
 }
 
 /// Stages one and two: reads the extract and builds the network.
@@ -176,7 +179,7 @@ pub fn read_network(
     let input = (&[input][..], &Changes::default());
     let (roads, origin) = read_roads(input, countries, (u64::MAX, true), &mut |_| Ok(()), reporter, summary)?;
     summary.account.extend(roads.account());
-    Ok((roads.into_whole(), origin.blake3))
+    Ok((roads.into_whole().network, origin.blake3))
 }
 
 /// Reads a source as it is after changes. `behind` takes what a map shows behind its roads. `edges_at_once` and `whole` are those of [`Roads::new`].

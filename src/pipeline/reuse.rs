@@ -8,7 +8,7 @@ use std::time::Instant;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::certify::{NearNodes, Touched};
-use crate::network::{Differences, Network};
+use crate::network::{Differences, Network, Portion};
 use crate::osm::LonLat;
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
@@ -16,17 +16,18 @@ use crate::reporter::Silent;
 use crate::rows::{EdgeMeasure, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{CertifiedSet, Database, Kept, KeptPlans};
+use crate::store::{self, CertifiedSet, Database, KeptPlans};
 use crate::turns::{JunctionArea, TurnFacts, turn_facts};
 
+use super::again::StoredSet;
 use super::identity;
 use super::making::Making;
 use super::{RunError, StageSummary, Summary, read_roads, record};
 
 /// The certificates of one vehicle.
 struct Set {
-    edges: Vec<Kept>,
-    turns: Vec<Kept>,
+    edges: Vec<store::Kept>,
+    turns: Vec<store::Kept>,
     /// By first edge of the stroke, and by turn.
     plans: KeptPlans,
     turn_plans: KeptPlans,
@@ -55,58 +56,91 @@ pub(super) struct Older<'a> {
     pub(super) made_from: Option<(PathBuf, Changes)>,
 }
 
-/// What an earlier database has, before it is compared with newer roads.
-pub(super) struct Stored {
-    network: Network,
-    /// By edge: its id, and what its corridor measures.
-    measures: Vec<(i64, EdgeMeasure)>,
-    sets: Vec<Set>,
-    facts: Vec<TurnFacts>,
-    junctions: Vec<JunctionArea>,
+/// An earlier database with the roads that it has, before they are compared with newer ones.
+pub(super) struct Stored<'a> {
+    database: &'a mut Database,
+    vehicles: Vec<String>,
+    pub(super) roads: Portion,
+    /// Turns of the roads; none if none are certified.
+    pub(super) facts: Vec<TurnFacts>,
+    /// By edge of the database: its id, and what its corridor measures.
+    pub(super) measures: Vec<(i64, EdgeMeasure)>,
+    pub(super) certificates: Certificates,
     /// How long it took to read, seconds.
     seconds: f64,
 }
 
-impl Stored {
-    /// Reads everything, network and certificates beside each other. If the extract is known, the network is built from it again, which takes
-    /// a third of the time of loading it.
-    pub(super) fn read(older: Older<'_>, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
+/// The certificates of an earlier database.
+pub(super) enum Certificates {
+    /// The verdicts, if rows may be changed in place, and the connection that lets no other program change the database meanwhile.
+    InPlace(Database, Vec<StoredSet>),
+    /// All that they say.
+    Read(Kept),
+}
+
+/// Certificates, and the areas of junctions by node.
+pub(super) struct Kept {
+    sets: Vec<Set>,
+    junctions: Vec<JunctionArea>,
+}
+
+impl Kept {
+    fn read(database: &mut Database, vehicles: &[String], settings: &Settings) -> Result<Self, RunError> {
+        let mut sets = Vec::new();
+        for id in vehicles {
+            let [plans, turn_plans] = database.kept_plans(id, settings.policy)?;
+            let edges = database.kept_edges(id, settings.policy)?;
+            let turns = database.kept_turns(id, settings.policy)?;
+            sets.push(Set { edges, turns, plans, turn_plans });
+        }
+        Ok(Self { sets, junctions: if settings.turns { database.junction_areas()? } else { Vec::new() } })
+    }
+}
+
+impl<'a> Stored<'a> {
+    /// Reads roads and verdicts beside each other. If the extract is known, the network is built from it again, which takes a third of the time
+    /// of loading it.
+    pub(super) fn read(older: Older<'a>, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
         let clock = Instant::now();
         let Older { database, vehicles, made_from } = older;
         let path = database.path().to_owned();
-        let certificates = || {
-            let mut database = Database::open(&path)?;
-            let mut sets = Vec::new();
-            for id in &vehicles {
-                let [plans, turn_plans] = database.kept_plans(id, settings.policy)?;
-                let edges = database.kept_edges(id, settings.policy)?;
-                let turns = database.kept_turns(id, settings.policy)?;
-                sets.push(Set { edges, turns, plans, turn_plans });
+        let in_place = made_from.is_some();
+        let of_database = || {
+            // A database that is only to be read, or that another program is changing, is not changed in place.
+            let change = |mut db: Database| db.begin_change().map(|()| db);
+            let locked = in_place.then(|| Database::open_to_change(&path).and_then(change).ok()).flatten();
+            if let Some(mut db) = locked {
+                let (measures, sets) = (db.edge_measures()?, StoredSet::all(&mut db, &path)?);
+                return Ok((measures, Certificates::InPlace(db, sets)));
             }
-            let measures = database.edge_measures()?;
-            let junctions = if settings.turns { database.junction_areas()? } else { Vec::new() };
-            Ok::<_, RunError>((sets, measures, junctions))
+            let mut db = Database::open(&path)?;
+            Ok::<_, RunError>((db.edge_measures()?, Certificates::Read(Kept::read(&mut db, &vehicles, settings)?)))
         };
         // Not on rayon's threads, which build the newer network meanwhile: these wait for SQLite most of the time.
-        let (roads, certificates) = std::thread::scope(|scope| {
-            let certificates = scope.spawn(certificates);
-            let network = match &made_from {
+        let (roads, of_database) = std::thread::scope(|scope| {
+            let of_database = scope.spawn(of_database);
+            let roads = match &made_from {
                 Some((extract, changes)) => built(extract, changes, countries),
-                None => database.load_network().map_err(RunError::from),
+                None => database.load_network().map(Portion::whole).map_err(RunError::from),
             };
             let facts =
-                |network: &Network| if settings.turns { turn_facts(network, &settings.kerbs) } else { Vec::new() };
-            let roads = network.map(|network| (facts(&network), network));
-            (roads, certificates.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+                |roads: &Portion| if settings.turns { turn_facts(&roads.network, &settings.kerbs) } else { Vec::new() };
+            let roads = roads.map(|roads| (facts(&roads), roads));
+            (roads, of_database.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         });
-        let ((facts, network), (sets, measures, junctions)) = (roads?, certificates?);
+        let ((facts, roads), (measures, certificates)) = (roads?, of_database?);
         let seconds = clock.elapsed().as_secs_f64();
-        Ok(Self { network, measures, sets, facts, junctions, seconds })
+        Ok(Self { database, vehicles, roads, facts, measures, certificates, seconds })
+    }
+
+    /// Whether the database has the edges of the roads that were read for it.
+    pub(super) fn has_these_edges(&self) -> bool {
+        self.measures.iter().map(|(id, _)| *id).eq(self.roads.network.edges.iter().map(|edge| edge.id))
     }
 
     /// The summary of loading.
     pub(super) fn stage(&self) -> StageSummary {
-        let items = self.network.edges.len() as u64;
+        let items = self.roads.network.edges.len() as u64;
         StageSummary { stage: "load", seconds: self.seconds, items, what: "directed edges" }
     }
 }
@@ -114,17 +148,28 @@ impl Stored {
 impl Earlier {
     /// Finds what stands in a newer network. `None` if the earlier database lacks certificates, or has other edges than the network that was
     /// read for it.
-    pub(super) fn find(stored: Stored, network: &Network, turns: bool) -> Option<Self> {
-        let Stored { network: old, measures, sets, facts, junctions, .. } = stored;
-        let whole = |set: &Set| set.edges.len() == old.edges.len() && (!turns || set.turns.len() == facts.len());
-        let same_edges = measures.iter().map(|(id, _)| *id).eq(old.edges.iter().map(|edge| edge.id));
-        if !same_edges || !sets.iter().all(whole) {
-            return None;
+    pub(super) fn find(stored: Stored<'_>, network: &Network, settings: &Settings) -> Result<Option<Self>, RunError> {
+        if !stored.has_these_edges() {
+            return Ok(None);
+        }
+        let Stored { database, vehicles, roads: Portion { network: old, .. }, facts, measures, certificates, .. } =
+            stored;
+        let Kept { sets, junctions } = match certificates {
+            Certificates::Read(kept) => kept,
+            Certificates::InPlace(locked, _) => {
+                drop(locked);
+                Kept::read(database, &vehicles, settings)?
+            }
+        };
+        let whole =
+            |set: &Set| set.edges.len() == old.edges.len() && (!settings.turns || set.turns.len() == facts.len());
+        if !sets.iter().all(whole) {
+            return Ok(None);
         }
         let differences = Differences::find(&old, network);
         let touched = Touched::find(network, &[], &differences.edges, &differences.nodes);
         let measures = measures.into_iter().map(|(_, measure)| measure).collect();
-        Some(Self { differences, measures, sets, facts, junctions, touched })
+        Ok(Some(Self { differences, measures, sets, facts, junctions, touched }))
     }
 
     /// The strokes that stand, as indices into the new network.
@@ -142,7 +187,7 @@ impl Earlier {
         &'a self,
         network: &'a Network,
         stroke: u32,
-    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a Kept>)> {
+    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a store::Kept>)> {
         edges_of(network, stroke).iter().filter_map(|&edge| {
             let older = self.older(edge)? as usize;
             let kept = self.sets.iter().map(|set| set.edges.get(older)).collect::<Option<Vec<_>>>()?;
@@ -163,7 +208,7 @@ impl Earlier {
         &'a self,
         network: &Network,
         turns: &'a [TurnFacts],
-    ) -> impl Iterator<Item = (u32, Vec<(&'a Kept, Option<StoredPlan>)>)> {
+    ) -> impl Iterator<Item = (u32, Vec<(&'a store::Kept, Option<StoredPlan>)>)> {
         let touched = Touched::find(network, turns, &self.differences.edges, &self.differences.nodes);
         let touched: FxHashSet<u32> = touched.turns.into_iter().collect();
         let by_id: FxHashMap<i64, u32> = (0_u32..).zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();
@@ -196,24 +241,28 @@ impl Earlier {
         (stand, others)
     }
 
-    /// Whether two turns of one id are the same movement with the same kerb and the same restriction.
     fn same_turn(&self, old: &TurnFacts, new: &TurnFacts) -> bool {
-        let TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line } = new;
-        let same = |edge: u32, older: u32| self.older(edge) == Some(older);
-        *id == old.id
-            && same(movement.from, old.movement.from)
-            && same(movement.to, old.movement.to)
-            && movement.kind == old.movement.kind
-            && movement.forbidden.is_some() == old.movement.forbidden.is_some()
-            && through.len() == old.through.len()
-            && through.iter().zip(&old.through).all(|(&edge, &older)| same(edge, older))
-            && (angle_deg, kerb_radius_m, kerb_source, line)
-                == (&old.angle_deg, &old.kerb_radius_m, &old.kerb_source, &old.line)
+        same_turn(&self.differences, old, new)
     }
 }
 
+/// Whether two turns of one id are the same movement with the same kerb and the same restriction.
+pub(super) fn same_turn(differences: &Differences, old: &TurnFacts, new: &TurnFacts) -> bool {
+    let TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line } = new;
+    let same = |edge: u32, older: u32| differences.older.get(edge as usize).copied().flatten() == Some(older);
+    *id == old.id
+        && same(movement.from, old.movement.from)
+        && same(movement.to, old.movement.to)
+        && movement.kind == old.movement.kind
+        && movement.forbidden.is_some() == old.movement.forbidden.is_some()
+        && through.len() == old.through.len()
+        && through.iter().zip(&old.through).all(|(&edge, &older)| same(edge, older))
+        && (angle_deg, kerb_radius_m, kerb_source, line)
+            == (&old.angle_deg, &old.kerb_radius_m, &old.kerb_source, &old.line)
+}
+
 /// The network of an extract with changes.
-fn built(extract: &Path, changes: &Changes, countries: &Countries) -> Result<Network, RunError> {
+fn built(extract: &Path, changes: &Changes, countries: &Countries) -> Result<Portion, RunError> {
     let source = (&[extract][..], changes);
     let whole = (u64::MAX, true);
     let (roads, _) = read_roads(source, countries, whole, &mut |_| Ok(()), &Silent, &mut Summary::default())?;

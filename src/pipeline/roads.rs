@@ -45,9 +45,15 @@ impl<'c> Roads<'c> {
         portion.map(|(_, portion)| &mut portion.network)
     }
 
-    /// The network, which must be whole.
-    pub(super) fn into_whole(self) -> Network {
-        self.current.map(|(_, portion)| portion.network).unwrap_or_default()
+    /// The only portion, if the network is whole.
+    pub(super) fn only(&self) -> Option<&Portion> {
+        let portion = if self.divided.is_some() { None } else { self.current.as_ref() };
+        portion.map(|(_, portion)| portion)
+    }
+
+    /// The only portion of a network, which must be whole.
+    pub(super) fn into_whole(self) -> Portion {
+        self.current.map_or_else(|| Portion::whole(Network::default()), |(_, portion)| portion)
     }
 
     /// Number of portions.

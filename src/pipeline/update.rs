@@ -14,7 +14,7 @@ use crate::store::{Database, MapChanges, Run, StoreError};
 use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
-use super::making::{Making, Whom};
+use super::making::{Made, Making, Whom};
 use super::reuse::Older;
 use super::source;
 use super::{Certify, EDGES_AT_ONCE, RunError, Summary, certify, utc};
@@ -168,8 +168,12 @@ fn make(
         now: ask.now,
     };
     let older = Older { database: &mut old, vehicles: own, made_from };
-    let mut summary = making.run(Whom::Earlier(older, models), None, reporter)?;
+    let Made { mut summary, in_place } = making.run(Whom::Earlier(older, models), None, reporter)?;
     for (id, settings) in others {
+        if in_place {
+            summary.vehicles.push(id);
+            continue;
+        }
         reporter.note(&format!("{id}, corridor {}: certified again, with its own settings", settings.policy.name()));
         let vehicle = vehicle(&id)?;
         let certify_again = Certify {

@@ -33,6 +33,12 @@ pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> 
     bulk.finish(c).await
 }
 
+/// Replaces all areas.
+pub(super) async fn replace(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
+    sqlx::query("DELETE FROM area").execute(&mut *c).await?;
+    insert(c, areas).await
+}
+
 /// Reads all areas.
 pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Vec<Area>> {
     rows(c, "SELECT way_id, kind, geom FROM area ORDER BY area_no", |row| {

@@ -60,6 +60,13 @@ fn map_backdrop(row: &SqliteRow) -> Sql<MapBackdrop> {
     Ok(MapBackdrop { number: fid, kind: word(row, 1)?, name: row.try_get(2)?, shape })
 }
 
+/// Replaces everything.
+pub(super) async fn replace(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
+    sqlx::query("DELETE FROM backdrop").execute(&mut *c).await?;
+    sqlx::query("DELETE FROM rtree_backdrop_geom").execute(&mut *c).await?;
+    insert(c, things).await
+}
+
 pub(super) async fn insert(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
     let mut rows = Bulk::new("backdrop", 5);
     let mut boxes = Bulk::new("rtree_backdrop_geom", 6);

@@ -16,7 +16,7 @@ use super::writer::{VehicleNo, Writer};
 
 /// Rows of a set that SQLite hands over as one text. Each row that sqlx hands over by itself costs a microsecond or more: a quarter of a
 /// million rows took 0.6 s.
-const PAGE_ROWS: usize = 1000;
+pub(super) const PAGE_ROWS: usize = 1000;
 
 /// A stored certificate of an edge or a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -45,6 +45,12 @@ impl Database {
     }
 }
 
+/// Replaces what was applied before.
+pub(super) async fn replace(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
+    sqlx::query("DELETE FROM map_change").execute(&mut *c).await?;
+    insert(c, made).await
+}
+
 pub(super) async fn insert(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
     if *made == MapChanges::default() {
         return Ok(());

@@ -4,6 +4,7 @@
 //! [`Database::open`] opens a file for reading. Certificates are stored as small integers, rounded so that they never claim
 //! more than was computed. Rows are written and read as the types of `rows`.
 
+mod amend;
 mod areas;
 mod backdrop;
 mod blob;
@@ -29,6 +30,7 @@ mod numbers;
 mod overview;
 mod packed;
 mod part;
+mod placing;
 mod plans;
 mod query;
 mod records;
@@ -48,6 +50,7 @@ mod turns;
 mod waiting;
 mod writer;
 
+pub use amend::Amendment;
 pub use database::Database;
 pub use error::StoreError;
 pub use evidence::Register;

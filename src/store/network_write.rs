@@ -1,5 +1,6 @@
 //! Writes the network into its tables. Arrays keep their order, so that [`super::network_read`] reads the same network.
 
+use std::io;
 use std::ops::Range;
 use std::path::Path;
 
@@ -36,38 +37,26 @@ pub(super) async fn write(
 ) -> Sql<Written> {
     let mut boxes = sorter(path, "-boxes")?;
     let written = roads_and_edges(to, roads.sorted()?, edges.sorted()?, &mut boxes).await?;
-    write_strokes(to, strokes.sorted()?).await?;
+    write_strokes(to, strokes.sorted()?.map(|row| row.map(|(_, row)| row))).await?;
     spatial_index(to, boxes.sorted()?).await?;
     Ok(written)
 }
 
-/// Writes the table of roads.
-struct Roads {
-    rows: Sorted<u32, RoadRow>,
-    /// The road that was written last, with its index.
-    current: Option<(u32, RoadRow)>,
+/// Writes the table of roads, with their sections and limits.
+pub(super) struct Roads {
     sections: Distinct<[Option<(u32, u32, u8)>; 3]>,
     legals: Distinct<LegalKey>,
     bulk: Bulk,
 }
 
 impl Roads {
-    fn new(rows: Sorted<u32, RoadRow>) -> Self {
+    pub(super) fn new() -> Self {
         let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 9));
-        Self { rows, current: None, sections, legals, bulk: Bulk::new("road", 16) }
+        Self { sections, legals, bulk: Bulk::new("road", 16) }
     }
 
-    /// Writes the roads up to one.
-    async fn up_to(&mut self, to: &mut impl Takes, wanted: u32) -> Sql<&RoadRow> {
-        while self.current.as_ref().is_none_or(|(no, _)| *no != wanted) {
-            let (no, row) = self.rows.next().ok_or_else(|| content(format!("road {wanted} is missing")))??;
-            self.write(to, no, &row).await?;
-            self.current = Some((no, row));
-        }
-        self.current.as_ref().map(|(_, row)| row).ok_or_else(|| content("a road is missing"))
-    }
-
-    async fn write(&mut self, to: &mut impl Takes, no: u32, row: &RoadRow) -> Sql<()> {
+    /// Writes the next road.
+    pub(super) async fn write(&mut self, to: &mut impl Takes, no: u32, row: &RoadRow) -> Sql<()> {
         let road = &row.road;
         let mut section = [0; 2];
         let mut legal = [0; 2];
@@ -97,7 +86,7 @@ impl Roads {
         bulk.end_row(to).await
     }
 
-    async fn finish(self, to: &mut impl Takes) -> Sql<()> {
+    pub(super) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
         self.sections.bulk.finish(to).await?;
         self.legals.bulk.finish(to).await?;
         self.bulk.finish(to).await
@@ -106,19 +95,19 @@ impl Roads {
 
 /// Where an edge's positions and narrow places are, among those of all edges. Both directions of a piece of road share theirs, and a piece
 /// shares its first position with the piece before. Positions that no edge uses do not count.
-#[derive(Default)]
-struct Ranges {
+#[derive(Clone, Default)]
+pub(super) struct Ranges {
     road: Option<u32>,
     place: u32,
-    shape: Range<u32>,
-    narrowings: Range<u32>,
+    pub(super) shape: Range<u32>,
+    pub(super) narrowings: Range<u32>,
     /// End of all positions.
     end: u32,
 }
 
 impl Ranges {
     /// Goes on to the next edge. Returns whether its piece of road is a new one.
-    fn next(&mut self, row: &EdgeRow) -> bool {
+    pub(super) fn next(&mut self, row: &EdgeRow) -> bool {
         let same_road = self.road == Some(row.road);
         if same_road && row.place == self.place {
             return false;
@@ -135,13 +124,14 @@ impl Ranges {
 
 async fn roads_and_edges(
     to: &mut impl Takes,
-    roads: Sorted<u32, RoadRow>,
+    mut roads: Sorted<u32, RoadRow>,
     edges: Sorted<u32, EdgeRow>,
     boxes: &mut Sorter<(u64, u32), Bounds>,
 ) -> Sql<Written> {
-    let mut roads = Roads::new(roads);
+    let mut of_roads = Roads::new();
+    let mut current: Option<(u32, RoadRow)> = None;
     let mut bulk = Bulk::new("edge", 37);
-    let mut narrowings = Bulk::new("narrowing", 3);
+    let mut narrowings = Narrowings::new();
     let mut ranges = Ranges::default();
     let mut written = Written { edges: 0, bounds: None };
     for row in edges {
@@ -151,45 +141,80 @@ async fn roads_and_edges(
         }
         written.edges += 1;
         if ranges.next(&row) {
-            for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
-                narrowings.add(no)?;
-                narrowings.add(narrowing.vertex)?;
-                narrowings.add(decimal(narrowing.passage_m))?;
-                narrowings.end_row(to).await?;
-            }
+            narrowings.write(to, &ranges, &row).await?;
         }
-        let road = roads.up_to(to, row.road).await?;
-        let EdgeRow { edge, mut shape, section, measure, .. } = row;
-        if edge.direction == Direction::Backward {
-            shape.reverse();
+        while current.as_ref().is_none_or(|(no, _)| *no != row.road) {
+            let (no, road) = roads.next().ok_or_else(|| content(format!("road {} is missing", row.road)))??;
+            of_roads.write(to, no, &road).await?;
+            current = Some((no, road));
         }
-        let (geom, bounds) = blob::encode(shape.iter().copied()).ok_or_else(|| content("an edge has no shape"))?;
+        let (_, road) = current.as_ref().ok_or_else(|| content("a road is missing"))?;
+        let bounds = write_edge(to, &mut bulk, (index, row), (road, &ranges)).await?;
         boxes.push((morton(&bounds), index), &bounds)?;
         written.bounds = Some(written.bounds.map_or(bounds, |all| all.union(bounds)));
-        bulk.add(i64::from(index) + 1)?;
-        bulk.add(edge.id)?;
-        bulk.add(road.road.way_id)?;
-        bulk.add(edge.from_node)?;
-        bulk.add(edge.to_node)?;
-        bulk.add(edge.direction.name())?;
-        bulk.add(geom)?;
-        bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)))?;
-        add_road_columns(&mut bulk, road, &edge, &section)?;
-        bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()))?;
-        bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()))?;
-        add_legal(&mut bulk, &edge.legal)?;
-        bulk.add(edge.barred)?;
-        bulk.add(edge.cut)?;
-        bulk.add(i64::from(row.road) + 1)?;
-        bulk.add(ranges.shape.start)?;
-        bulk.add(ranges.narrowings.start)?;
-        bulk.add(ranges.narrowings.end)?;
-        bulk.end_row(to).await?;
     }
-    roads.finish(to).await?;
+    of_roads.finish(to).await?;
     bulk.finish(to).await?;
     narrowings.finish(to).await?;
     Ok(written)
+}
+
+/// Writes the table of narrow places.
+pub(super) struct Narrowings(Bulk);
+
+impl Narrowings {
+    pub(super) fn new() -> Self {
+        Self(Bulk::new("narrowing", 3))
+    }
+
+    /// Writes those of an edge whose piece of road is a new one.
+    pub(super) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &EdgeRow) -> Sql<()> {
+        for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
+            self.0.add(no)?;
+            self.0.add(narrowing.vertex)?;
+            self.0.add(decimal(narrowing.passage_m))?;
+            self.0.end_row(to).await?;
+        }
+        Ok(())
+    }
+
+    pub(super) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
+        self.0.finish(to).await
+    }
+}
+
+/// Writes the row of an edge, given with its index, and returns the box around it. `bulk` collects rows of the table `edge`.
+pub(super) async fn write_edge(
+    to: &mut impl Takes,
+    bulk: &mut Bulk,
+    (index, row): (u32, EdgeRow),
+    (road, ranges): (&RoadRow, &Ranges),
+) -> Sql<Bounds> {
+    let EdgeRow { edge, mut shape, section, measure, road: road_no, .. } = row;
+    if edge.direction == Direction::Backward {
+        shape.reverse();
+    }
+    let (geom, bounds) = blob::encode(shape.iter().copied()).ok_or_else(|| content("an edge has no shape"))?;
+    bulk.add(i64::from(index) + 1)?;
+    bulk.add(edge.id)?;
+    bulk.add(road.road.way_id)?;
+    bulk.add(edge.from_node)?;
+    bulk.add(edge.to_node)?;
+    bulk.add(edge.direction.name())?;
+    bulk.add(geom)?;
+    bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)))?;
+    add_road_columns(bulk, road, &edge, &section)?;
+    bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()))?;
+    bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()))?;
+    add_legal(bulk, &edge.legal)?;
+    bulk.add(edge.barred)?;
+    bulk.add(edge.cut)?;
+    bulk.add(i64::from(road_no) + 1)?;
+    bulk.add(ranges.shape.start)?;
+    bulk.add(ranges.narrowings.start)?;
+    bulk.add(ranges.narrowings.end)?;
+    bulk.end_row(to).await?;
+    Ok(bounds)
 }
 
 /// Adds the columns of the road that users want with each edge.
@@ -215,12 +240,16 @@ pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
     Ok(())
 }
 
-async fn write_strokes(to: &mut impl Takes, strokes: Sorted<u32, StrokeRow>) -> Sql<()> {
+/// Writes the strokes, which come in the order of their first edges.
+pub(super) async fn write_strokes(
+    to: &mut impl Takes,
+    strokes: impl Iterator<Item = io::Result<StrokeRow>>,
+) -> Sql<()> {
     let mut bulk = Bulk::new("stroke", 6);
     let mut stroke_edges = Bulk::new("stroke_edge", 2);
     let mut position = 0_i64;
     for (no, row) in (1_i64..).zip(strokes) {
-        let (_, StrokeRow { approach, edges, closed }) = row?;
+        let StrokeRow { approach, edges, closed } = row?;
         bulk.add(no)?;
         for list in [&approach, &edges] {
             bulk.add(position)?;

@@ -4,7 +4,7 @@
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::io;
+use std::io::{self, Seek as _};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -48,6 +48,15 @@ impl Part {
         let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
         remove_companions(&path)?;
         Ok(Self { target: target.to_owned(), path, leftover: lock.leftover, lock, placed: false })
+    }
+
+    /// Fills the part with the bytes of the target.
+    pub(super) fn copy_target(&mut self) -> Result<(), StoreError> {
+        let at = |e| StoreError::io(&self.target, e);
+        let mut target = File::open(&self.target).map_err(at)?;
+        let part = self.lock.file.as_mut().ok_or_else(|| at(io::Error::other("the part is not a file")))?;
+        part.set_len(0).and_then(|()| part.rewind()).and_then(|()| io::copy(&mut target, part)).map_err(at)?;
+        Ok(())
     }
 
     /// Syncs the part to the disk and renames it over the target. The database in the part must be closed, and no process

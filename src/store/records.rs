@@ -1,5 +1,6 @@
 //! The records of a database about its vehicles and the runs that made it.
 
+use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::account::AccountRow;
@@ -82,6 +83,18 @@ pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[Acco
     }
     bulk.finish(c).await?;
     Ok(run_id)
+}
+
+/// Replaces all runs by one, from which all sets then are.
+pub(super) async fn replace_runs(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<()> {
+    sqlx::query("DELETE FROM account").execute(&mut *c).await?;
+    sqlx::query("DELETE FROM run").execute(&mut *c).await?;
+    let run_id = add_run(c, run, account).await?;
+    for table in ["certified_set", "certified_turns"] {
+        sqlx::query(AssertSqlSafe(format!("UPDATE {table} SET run_id = ?"))).bind(run_id).execute(&mut *c).await?;
+    }
+    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(c).await?;
+    Ok(())
 }
 
 /// Adds a vehicle under a number.

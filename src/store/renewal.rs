@@ -15,8 +15,9 @@ use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::evidence::{self, Register};
-use super::names::corridor_no;
-use super::network_read::{rows, verdict};
+use super::kept::PAGE_ROWS;
+use super::names::{corridor_no, verdict_of};
+use super::network_read::rows;
 use super::network_write::add_widths;
 use super::packed::Packed;
 use super::plans;
@@ -103,23 +104,29 @@ impl Database {
     }
 
     fn verdicts(&mut self, table: &'static str, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
-        self.session.run(async |c| {
+        // A thousand rows come as one text: each row that sqlx hands over by itself costs a microsecond or more.
+        let pages: Vec<(i64, String)> = self.session.run(async |c| {
             let sql = format!(
-                "SELECT verdict_no, fid FROM {table} WHERE corridor_no = ? \
-                 AND vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) ORDER BY fid"
+                "SELECT max(fid), json_group_array(verdict_no ORDER BY fid) FROM {table} WHERE corridor_no = ? \
+                 AND vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+                 GROUP BY fid / {PAGE_ROWS} ORDER BY fid / {PAGE_ROWS}"
             );
-            let all = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle).fetch_all(c).await?;
-            (1_i64..)
-                .zip(&all)
-                .map(|(expected, row)| {
-                    let fid: i64 = row.try_get(1)?;
-                    if fid != expected {
-                        return Err(content(format!("row {expected} of {table} is missing")));
-                    }
-                    verdict(row, 0, || format!("row {fid} of {table}"))
-                })
-                .collect()
-        })
+            sqlx::query_as(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle).fetch_all(c).await
+        })?;
+        let mut verdicts = Vec::with_capacity(pages.len() * PAGE_ROWS);
+        let damaged = |row: usize| StoreError::sql(&self.session.path, content(format!("row {row} of {table}")));
+        for (last, page) in &pages {
+            let first = verdicts.len() + 1;
+            let numbers: Vec<i64> = serde_json::from_str(page).map_err(|_| damaged(first))?;
+            for (row, &number) in (first..).zip(&numbers) {
+                verdicts.push(verdict_of(number).ok_or_else(|| damaged(row))?);
+            }
+            // Rows have distinct numbers, so none is missing if the last one has the number of all.
+            if *last != verdicts.len() as i64 {
+                return Err(damaged(first));
+            }
+        }
+        Ok(verdicts)
     }
 
     /// Whether the database has the turns of its network.
@@ -135,13 +142,13 @@ impl Database {
 }
 
 /// A set's rows, ready to be written.
-struct PackedRenewal {
+pub(super) struct PackedRenewal {
     edges: Vec<Packed>,
     turns: Vec<Packed>,
     turn_plans: Vec<StoredPlan>,
 }
 
-fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
+pub(super) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
     let edge = |known: &EdgeCertificate| known.pack().map_err(|why| unsound(known.edge, why));
@@ -164,13 +171,23 @@ async fn write(c: &mut SqliteConnection, renewal: &mut Renewal<'_>, packed: &[Pa
     if let Some((nodes, areas)) = junctions {
         junctions::replace(c, nodes, areas).await?;
     }
+    replace_sets(c, sets, packed).await?;
+    records::add_run(c, run, account).await?;
+    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(c).await?;
+    Ok(())
+}
+
+/// Replaces some certificates of some sets, with their plans.
+pub(super) async fn replace_sets(
+    c: &mut SqliteConnection,
+    sets: &mut [SetRenewal],
+    packed: &[PackedRenewal],
+) -> Sql<()> {
     for (set, packed) in sets.iter_mut().zip(packed) {
         let number = sqlx::query_scalar("SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?");
         let vehicle_no: u32 = number.bind(&set.vehicle).fetch_one(&mut *c).await?;
         replace(c, (vehicle_no, corridor_no(set.policy)), set, packed).await?;
     }
-    records::add_run(c, run, account).await?;
-    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(c).await?;
     Ok(())
 }
 
@@ -207,19 +224,36 @@ async fn remove(
     Ok(())
 }
 
-/// Writes the widths of edges and the measures of their corridors.
-///
-/// The triggers of the spatial index call functions that SQLite alone does not have, so they are away meanwhile. No geometry changes.
+/// The triggers that keep the spatial index of edges. They call functions that SQLite alone does not have, so they are away while rows
+/// of `edge` are written.
+pub(super) struct Triggers(Vec<(String, String)>);
+
+impl Triggers {
+    pub(super) async fn remove(c: &mut SqliteConnection) -> Sql<Self> {
+        let triggers =
+            "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge' ORDER BY rowid";
+        let triggers: Vec<(String, String)> = sqlx::query_as(triggers).fetch_all(&mut *c).await?;
+        for (name, _) in &triggers {
+            let name = name.replace('"', "\"\"");
+            sqlx::query(AssertSqlSafe(format!("DROP TRIGGER \"{name}\""))).persistent(false).execute(&mut *c).await?;
+        }
+        Ok(Self(triggers))
+    }
+
+    pub(super) async fn restore(self, c: &mut SqliteConnection) -> Sql<()> {
+        for (_, sql) in self.0 {
+            sqlx::query(AssertSqlSafe(sql)).persistent(false).execute(&mut *c).await?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the widths of edges and the measures of their corridors. No geometry changes.
 async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32, EdgeMeasure)]) -> Sql<()> {
     if edges.is_empty() {
         return Ok(());
     }
-    let triggers = "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge' ORDER BY rowid";
-    let triggers: Vec<(String, String)> = sqlx::query_as(triggers).fetch_all(&mut *c).await?;
-    for (name, _) in &triggers {
-        let name = name.replace('"', "\"\"");
-        sqlx::query(AssertSqlSafe(format!("DROP TRIGGER \"{name}\""))).persistent(false).execute(&mut *c).await?;
-    }
+    let triggers = Triggers::remove(c).await?;
     sqlx::query(
         "CREATE TEMP TABLE changed (fid INTEGER PRIMARY KEY, lane DOUBLE, lane_source TEXT, direction DOUBLE, \
          direction_source TEXT, carriageway DOUBLE, carriageway_source TEXT, radius DOUBLE, deviation DOUBLE)",
@@ -245,10 +279,7 @@ async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32
     .execute(&mut *c)
     .await?;
     sqlx::query("DROP TABLE changed").execute(&mut *c).await?;
-    for (_, sql) in triggers {
-        sqlx::query(AssertSqlSafe(sql)).persistent(false).execute(&mut *c).await?;
-    }
-    Ok(())
+    triggers.restore(c).await
 }
 
 /// Writes the kerbs of turns where they differ.

@@ -44,6 +44,13 @@ pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &mut [Portion
     bulk.finish(c).await
 }
 
+/// Replaces all restrictions.
+pub(super) async fn replace(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
+    sqlx::query("DELETE FROM restriction_edge").execute(&mut *c).await?;
+    sqlx::query("DELETE FROM restriction").execute(&mut *c).await?;
+    insert(c, restrictions).await
+}
+
 /// Reads the restrictions of a network with this number of edges.
 pub(super) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
     let sql = "SELECT fid FROM restriction_edge ORDER BY position";

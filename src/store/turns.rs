@@ -72,9 +72,9 @@ impl TurnSet<'_> {
 }
 
 /// A turn with all that its row says: it can be written without the network.
-#[derive(Serialize, Deserialize)]
+#[derive(PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
-    /// With indices of the whole network.
+    /// With indices of edges of the whole network, and no index of a restriction.
     facts: TurnFacts,
     via_node: i64,
     /// The tagged words of the restriction that forbids the turn.
@@ -94,7 +94,7 @@ impl Record {
         let restriction = forbids.map(|restriction| restriction.kind.name());
         let passage = network.passage_kind(&facts.through);
         let Movement { from, to, .. } = facts.movement;
-        let movement = Movement { from: number(from), to: number(to), ..facts.movement };
+        let movement = Movement { from: number(from), to: number(to), forbidden: None, ..facts.movement };
         let through = facts.through.iter().map(|&edge| number(edge)).collect();
         Self { facts: TurnFacts { movement, through, ..facts.clone() }, via_node, restriction, passage }
     }
@@ -119,15 +119,18 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
     }
 }
 
-/// Writes the table `turn` and returns the box around it. Turns keep their order: `fid` is the index + 1.
-pub(super) async fn write(to: &mut impl Takes, turns: impl Iterator<Item = io::Result<Record>>) -> Sql<Option<Bounds>> {
+/// Writes turns into the table `turn` and returns the box around them. Each comes with its index in the order of the whole network.
+pub(super) async fn write(
+    to: &mut impl Takes,
+    turns: impl Iterator<Item = io::Result<(u32, Record)>>,
+) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
-    for (fid, turn) in (1_i64..).zip(turns) {
-        let Record { facts, via_node, restriction, passage } = turn?;
+    for turn in turns {
+        let (index, Record { facts, via_node, restriction, passage }) = turn?;
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
-        bulk.add(fid)?;
+        bulk.add(i64::from(index) + 1)?;
         bulk.add(facts.id)?;
         bulk.add(i64::from(facts.movement.from) + 1)?;
         bulk.add(i64::from(facts.movement.to) + 1)?;
@@ -281,8 +284,8 @@ pub(super) async fn insert_set(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        let record = |facts| Ok(Record::new(set.network, facts, |edge| edge));
-        let bounds = write(c, set.facts.iter().map(record)).await?;
+        let record = |(index, facts)| Ok((index, Record::new(set.network, facts, |edge| edge)));
+        let bounds = write(c, (0..).zip(set.facts).map(record)).await?;
         register(c, bounds, time).await?;
         let around = junctions::insert(c, set.junctions.iter().cloned().map(Ok)).await?;
         junctions::register(c, around, time).await?;

@@ -4,9 +4,8 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
-use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 
 use crate::account::AccountRow;
 use crate::network::{Area, Portion};
@@ -17,12 +16,13 @@ use crate::settings::Settings;
 use crate::turns::{JunctionArea, TurnFacts};
 use crate::words::{Named, verdict_words};
 
+use super::amend::{self, Amendment};
 use super::areas;
 use super::backdrop;
 use super::contents;
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::evidence::{self, Register, RegisterState};
+use super::error::StoreError;
+use super::evidence::{self, Register};
 use super::finished::{self, Finished};
 use super::gathered::Gathered;
 use super::junctions;
@@ -31,8 +31,10 @@ use super::names::{VERDICTS, corridor_no};
 use super::network_write;
 use super::packed::Packed;
 use super::part::{Part, sorter, with_suffix};
+use super::placing::{Older, has_journal, options, put_in_place};
 use super::plans;
 use super::records::{self, Run, VehicleRecord};
+use super::renewal;
 use super::restrictions;
 use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
 use super::segments;
@@ -118,18 +120,7 @@ impl Database {
             }
         }
         let part = Part::create(path)?;
-        let options = SqliteConnectOptions::new()
-            .filename(&part.path)
-            .page_size(PAGE_BYTES)
-            // If the program is killed, the part is thrown away, so no journal and no sync are needed before the end.
-            .journal_mode(SqliteJournalMode::Off)
-            .synchronous(SqliteSynchronous::Off)
-            .locking_mode(SqliteLockingMode::Exclusive)
-            .pragma("cache_size", "-65536")
-            .pragma("temp_store", "MEMORY")
-            // Foreign keys are checked once, over the whole file, before it is put in place.
-            .foreign_keys(false);
-        let mut session = Session::open(path, &options)?;
+        let mut session = Session::open(path, &options(&part).page_size(PAGE_BYTES))?;
         session.run(async |c| {
             migrate(c, Some(BEFORE_DATA)).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
@@ -354,11 +345,32 @@ impl Writer {
             finishing.run(turns, run, run_id)?;
         }
         self.session.run(async |c| contents::add_tables(c, &run.finished).await)?;
+        put_in_place(self.session, self.part, self.older.as_ref())
+    }
+
+    /// Puts a copy of the older database in place, in which only what differs is changed. The caller has begun a change of the older one
+    /// ([`Database::begin_change`]), so that it is the same until then. Certificates, roads and turns that were added to this writer do not count.
+    ///
+    /// # Errors
+    /// Something cannot be read or stored. The older database is then unchanged.
+    pub fn amend(mut self, amendment: &mut Amendment<'_>, run: &Run) -> Result<(), StoreError> {
+        let path = self.session.path.clone();
         self.session.close()?;
-        check(&self.part.path, &path)?;
-        settle(&self.part.target)?;
-        nothing_added_meanwhile(&self.part.target, self.older.as_ref())?;
-        self.part.place()
+        self.part.copy_target()?;
+        let mut session = Session::open(&path, &options(&self.part))?;
+        let things = self.network.backdrop.sorted().map_err(|e| StoreError::io(&path, e))?;
+        let things = things.map(|row| row.map(|(_, thing)| thing));
+        let packed = amendment.sets.iter_mut().map(renewal::pack).collect::<Result<Vec<_>, _>>()?;
+        session.run(async |c| {
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            amend::write(c, amendment, &packed).await?;
+            areas::replace(c, &self.network.areas).await?;
+            backdrop::replace(c, things).await?;
+            map_changes::replace(c, &self.map_changes).await?;
+            records::replace_runs(c, run, &self.account).await?;
+            sqlx::query("COMMIT").execute(c).await
+        })?;
+        put_in_place(session, self.part, self.older.as_ref())
     }
 }
 
@@ -379,7 +391,7 @@ impl FinishTurns<'_> {
         let rows = turns.rows.sorted().map_err(at)?.enumerate().map(|(index, row)| {
             let (_, (arrival, record)) = row?;
             numbers[arrival as usize] = index as u32;
-            Ok(record)
+            Ok((index as u32, record))
         });
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
         session.run(async |c| sqlx::query("BEGIN").execute(c).await)?;
@@ -405,18 +417,6 @@ impl FinishTurns<'_> {
     }
 }
 
-/// The register of an older database, with its state, or why it cannot be read.
-type Older = Result<(Register, RegisterState), StoreError>;
-
-/// Refuses to lose measurements that somebody added to the older database meanwhile.
-fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), StoreError> {
-    let Some(Ok((_, before))) = older else { return Ok(()) };
-    match Database::open(target).and_then(|mut older| older.register_state()) {
-        Ok(now) if now != *before => Err(StoreError::RegisterChanged(target.to_owned())),
-        _ => Ok(()),
-    }
-}
-
 /// Whether a database that this program cannot use has measurements. In doubt it has none.
 fn has_measurements(path: &Path) -> bool {
     let options = SqliteConnectOptions::new().filename(path).read_only(true);
@@ -429,31 +429,6 @@ fn has_measurements(path: &Path) -> bool {
 /// Whether a file has no bytes, as `mktemp` makes it, and no journal beside it.
 fn holds_nothing(path: &Path) -> bool {
     !has_journal(path) && path.metadata().is_ok_and(|file| file.is_file() && file.len() == 0)
-}
-
-/// Whether a journal lies beside a database: that of a change in progress, or of a killed one.
-fn has_journal(path: &Path) -> bool {
-    ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists())
-}
-
-/// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does
-/// not prove a change in progress: a killed program leaves one, too, which opening the database rolls back or ignores.
-fn settle(target: &Path) -> Result<(), StoreError> {
-    const LONGEST: Duration = Duration::from_secs(60);
-    let pending = has_journal(target);
-    let start = Instant::now();
-    while pending && target.exists() {
-        let alone = Database::open_to_change(target).and_then(|mut old| {
-            old.session.run(async |c| sqlx::raw_sql("BEGIN EXCLUSIVE; ROLLBACK").execute(c).await)?;
-            old.close()
-        });
-        match alone {
-            Err(busy @ StoreError::Busy(_)) if start.elapsed() > LONGEST => return Err(busy),
-            Err(StoreError::Busy(_)) => {} // SQLite has already waited for its time-out of five seconds
-            _ => break,
-        }
-    }
-    Ok(())
 }
 
 fn unsound(vehicles: &[VehicleRecord], vehicle_no: u32, edge: u32, detail: String) -> StoreError {
@@ -499,26 +474,4 @@ async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
     .execute(c)
     .await?;
     Ok(())
-}
-
-/// Checks the integrity of a file and its foreign keys, which readers rely on: both at the same time. Messages name `target`.
-fn check(part: &Path, target: &Path) -> Result<(), StoreError> {
-    let options = SqliteConnectOptions::new().filename(part).read_only(true);
-    let (one, other) = rayon::join(
-        || Session::open(target, &options)?.run(async |c| integrity(c).await),
-        || Session::open(target, &options)?.run(async |c| references(c).await),
-    );
-    one.and(other)
-}
-
-async fn integrity(c: &mut SqliteConnection) -> Sql<()> {
-    let quick: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(c).await?;
-    if quick == "ok" { Ok(()) } else { Err(content(format!("SQLite's check says: {quick}"))) }
-}
-
-async fn references(c: &mut SqliteConnection) -> Sql<()> {
-    match sqlx::query("PRAGMA foreign_key_check").fetch_optional(c).await? {
-        Some(_) => Err(content("a row refers to one that is missing")),
-        None => Ok(()),
-    }
 }

@@ -2,7 +2,6 @@
 //!
 //! The result is that of certifying everything again. All of a change is one transaction.
 
-mod again;
 mod carried;
 
 use std::collections::BTreeSet;
@@ -10,20 +9,18 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use again::Again;
 pub(super) use carried::carried_over;
 
+use super::again::{Again, MadeAgain, StoredSet, VerdictChanges};
 use super::{RunError, Summary};
 use crate::account::AccountRow;
-use crate::certify::{Job, Touched, certify_strokes};
+use crate::certify::Touched;
 use crate::evidence::{self, Conflict, Entry, Quantity, Row, State, Target};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
-use crate::rows::EdgeMeasure;
 use crate::store::{Database, Register, Renewal, Run, StoreError};
 use crate::turns::{KerbSource, TurnFacts, junction_areas, junction_nodes, turn_facts};
-use crate::verdict::Verdict;
 use crate::words::Named as _;
 
 /// What to change.
@@ -92,26 +89,6 @@ pub struct SetChanged {
     pub turns: Option<VerdictChanges>,
 }
 
-/// How verdicts changed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct VerdictChanges {
-    /// Certificates that were made again.
-    pub again: usize,
-    /// Those that are `safe` and were not.
-    pub became_safe: usize,
-    /// Those that were `safe` and are not.
-    pub no_longer_safe: usize,
-}
-
-impl VerdictChanges {
-    fn note(&mut self, before: Option<Verdict>, now: Verdict) {
-        self.again += 1;
-        let [before, now] = [before, Some(now)].map(|verdict| verdict == Some(Verdict::Safe));
-        self.became_safe += usize::from(now && !before);
-        self.no_longer_safe += usize::from(before && !now);
-    }
-}
-
 /// Adds or removes measurements and certifies again what sees the change.
 ///
 /// # Errors
@@ -147,19 +124,23 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     let facts = if db.keeps_turns()? { Some(turn_facts(&network, &ingest.kerbs)) } else { None };
     changed.conflicts.extend(mapped_corners(&network, facts.as_deref().unwrap_or_default(), &changed.added));
     let touched = Touched::find(&network, facts.as_deref().unwrap_or_default(), &edges, &nodes);
-    let Ok(outcome) = certify_strokes::<std::convert::Infallible>(
-        &Job { network: &network, models: &[], settings: &ingest },
-        if ask.dry_run { &[] } else { &touched.strokes },
-        reporter,
-        |_, _| Ok(()),
-    );
-    let measured = measured(&network, &touched, &outcome.measures);
-    changed.again = [measured.len(), touched.turns.len()];
+    changed.again = [touched.edges(&network).count(), touched.turns.len()];
     if ask.dry_run {
         return Ok(changed);
     }
-    let again = Again { db: ask.db, network: &network, facts: facts.as_deref(), touched: &touched };
-    let sets = again.sets(&mut db, reporter, &mut changed)?;
+    let again = Again { network: &network, facts: facts.as_deref().unwrap_or_default(), touched: &touched };
+    let measured = again.measures(&ingest, reporter);
+    let mut sets = Vec::new();
+    if !touched.strokes.is_empty() || !touched.turns.is_empty() {
+        let clock = std::time::Instant::now();
+        let mut stored = StoredSet::all(&mut db, ask.db)?;
+        for MadeAgain { set, edges, turns } in again.sets(&mut stored, reporter) {
+            changed.sets.push(SetChanged { vehicle: set.vehicle.clone(), policy: set.policy, edges, turns });
+            sets.push(set);
+        }
+        let made = sets.iter().map(|set| set.edges.len() + set.turns.len()).sum::<usize>();
+        changed.summary.stage("certificates", clock, made as u64, "certificates");
+    }
 
     let clock = std::time::Instant::now();
     reporter.begin("store", 0);
@@ -238,18 +219,6 @@ fn apply(
             Ok((name, json!({"removed": numbers})))
         }
     }
-}
-
-/// Edges of touched strokes with the measures of their corridors.
-fn measured(network: &Network, touched: &Touched, measures: &[EdgeMeasure]) -> Vec<(u32, EdgeMeasure)> {
-    let strokes = touched.strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize));
-    let edges = strokes.flat_map(|stroke| {
-        network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize).unwrap_or_default()
-    });
-    let mut all: Vec<(u32, EdgeMeasure)> =
-        edges.map(|&edge| (edge, measures.get(edge as usize).copied().unwrap_or_default())).collect();
-    all.sort_unstable_by_key(|edge| edge.0);
-    all
 }
 
 /// The account of a register.
