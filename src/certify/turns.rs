@@ -312,13 +312,17 @@ impl Best {
 }
 
 fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
-    let mut planner = Planner::new(made);
-    models.iter().map(|model| best_path(made, &mut planner, model, options)).collect()
+    let (mut planner, grounds) = (Planner::new(made), Grounds::default());
+    models.iter().map(|model| best_path((made, &grounds), &mut planner, model, options)).collect()
 }
 
-fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
+fn best_path(
+    (made, grounds): (&TurnCorridors, &Grounds),
+    planner: &mut Planner<'_>,
+    model: &Model,
+    options: &Options,
+) -> Option<Best> {
     let mut best: Option<Best> = None;
-    let grounds = Grounds::default();
     let mut tried: Vec<i64> = Vec::new();
     for planned in planner.plan(&model.vehicle) {
         let hope = planned.score_m >= -HOPELESS_M;
@@ -326,7 +330,7 @@ fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, opt
             break;
         }
         tried.push(planned.code);
-        try_path((made, &grounds), planned.code, model, hope.then_some(options), &mut best);
+        try_path((made, grounds), planned.code, model, hope.then_some(options), &mut best);
         // Paths come by their score. On Heidelberg a later one was better for a fifth of the safe turns, by 1.4 cm for one in ten.
         if best.as_ref().is_some_and(|best| best.result.safe()) {
             return best;
@@ -334,7 +338,7 @@ fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, opt
     }
     if best.as_ref().is_some_and(Best::nearly_fits) {
         for planned in planner.best_seeds(&model.vehicle, MORE_PATHS).iter().filter(|p| !tried.contains(&p.code)) {
-            try_path((made, &grounds), planned.code, model, Some(options), &mut best);
+            try_path((made, grounds), planned.code, model, Some(options), &mut best);
             if best.as_ref().is_some_and(|best| best.result.safe()) {
                 break;
             }

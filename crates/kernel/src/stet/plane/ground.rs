@@ -117,7 +117,7 @@ impl Ground {
             rows,
             bundles: segments.chunks(BUNDLE).map(around).collect(),
             segments,
-            starts: Vec::with_capacity(columns * rows + 1),
+            starts: Vec::new(),
             near: Vec::new(),
             inside: Vec::new(),
         };
@@ -149,18 +149,25 @@ impl Ground {
                 }
             }
         }
-        pairs.sort_unstable_by(|(cell, a), (other, b)| {
-            cell.cmp(other).then(a.middle_m.total_cmp(&b.middle_m)).then(a.segment.cmp(&b.segment))
-        });
-        let mut next = 0;
-        for cell in 0..(self.columns * self.rows) as u32 {
-            self.starts.push(next as u32);
-            while pairs.get(next).is_some_and(|(of, _)| *of == cell) {
-                next += 1;
-            }
+        // By cell first, which needs no comparisons.
+        self.starts = vec![0; self.columns * self.rows + 1];
+        for (cell, _) in &pairs {
+            self.starts[*cell as usize + 1] += 1;
         }
-        self.starts.push(next as u32);
-        self.near = pairs.into_iter().map(|(_, near)| near).collect();
+        for cell in 1..self.starts.len() {
+            self.starts[cell] += self.starts[cell - 1];
+        }
+        let mut next = self.starts.clone();
+        self.near = vec![Near { segment: 0, middle_m: 0.0 }; pairs.len()];
+        for (cell, near) in pairs {
+            let next = &mut next[cell as usize];
+            self.near[*next as usize] = near;
+            *next += 1;
+        }
+        for cell in self.starts.windows(2) {
+            let near = &mut self.near[cell[0] as usize..cell[1] as usize];
+            near.sort_unstable_by(|a, b| a.middle_m.total_cmp(&b.middle_m).then(a.segment.cmp(&b.segment)));
+        }
     }
 
     /// Marks the cells whose corner lies inside, row by row: the boundary changes sides where it crosses the row.
@@ -234,24 +241,41 @@ impl Ground {
 
     /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
     pub(super) fn room(&self, p: Point) -> f64 {
-        let far = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p).0.sqrt();
+        self.room_and_nearest(p).0
+    }
+
+    /// Room of a place, and the nearest segment. Inside there is none beyond [`FAR_M`].
+    fn room_and_nearest(&self, p: Point) -> (f64, Option<u32>) {
+        let near = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p);
+        let far = near.0.sqrt();
         match self.contains(p) {
-            true => far,
-            false if far < FAR_M => -far,
-            false => -self.squared(p).sqrt(),
+            true => (far, near.1),
+            false if near.1.is_some() => (-far, near.1),
+            false => {
+                let (squared, segment) = self.nearest_of_all(p);
+                (-squared.sqrt(), segment)
+            }
         }
     }
 
-    /// Square of the distance of a place from the boundary.
-    fn squared(&self, p: Point) -> f64 {
-        let mut least = f64::INFINITY;
-        for (segments, [low, high]) in self.segments.chunks(BUNDLE).zip(&self.bundles) {
+    /// Square of the distance of a place from the boundary, and the nearest segment.
+    fn nearest_of_all(&self, p: Point) -> (f64, Option<u32>) {
+        let mut nearest = (f64::INFINITY, None);
+        for (first, (segments, [low, high])) in
+            (0..).step_by(BUNDLE).zip(self.segments.chunks(BUNDLE).zip(&self.bundles))
+        {
             let [x, y] = [0, 1].map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0));
-            if x * x + y * y < least {
-                least = segments.iter().map(|s| s.squared(p)).fold(least, f64::min);
+            if x * x + y * y >= nearest.0 {
+                continue;
+            }
+            for (number, segment) in (first..).zip(segments) {
+                let squared = segment.squared(p);
+                if squared < nearest.0 {
+                    nearest = (squared, Some(number));
+                }
             }
         }
-        least
+        nearest
     }
 
     /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
@@ -276,6 +300,7 @@ impl Ground {
             return (rough, rough - piece.most);
         };
         let (mut room, mut leeway) = (FAR_M - reach, FAR_M - reach - piece.most);
+        let pairs = pairs(&corners);
         let nearest = Near { segment: first, middle_m: 0.0 };
         for near in std::iter::once(&nearest).chain(near.iter().filter(|near| near.segment != first)) {
             let segment = &self.segments[near.segment as usize];
@@ -286,7 +311,7 @@ impl Ground {
             if segment.squared(middle) >= within * within {
                 continue;
             }
-            let Some(gap) = segment.gap(&corners) else { return outside() };
+            let Some(gap) = segment.gap(&corners, &pairs) else { return outside() };
             let far = apart(gap, [0.0; 2]);
             room = room.min(far);
             leeway = leeway.min(far - piece.stray_towards(gap, far));
@@ -295,36 +320,49 @@ impl Ground {
     }
 
     /// How far a swept piece is outside at most, metres: at least as deep as any place of its hull, and little deeper unless the leeway
-    /// is enough. Rooms change no faster than places, so a place speaks for those around it. What is enough changes no depth that is
-    /// not enough.
+    /// is enough. What is enough changes no depth that is not enough.
+    ///
+    /// A part of the piece over a part of the step is bounded in two ways. Rooms change no faster than places, so its middle speaks for all of it.
+    /// And no place is deeper than its distance from the segment that is nearest to the middle, which is greatest at a corner of the part.
     fn depth(&self, swept: &Swept<'_>) -> f64 {
         let between = |a: Point, b: Point, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
         let (before, after, turned) = swept.unslid();
+        let at = |part: f64, moment: f64| {
+            let [front, rear] = [0, 1].map(|i| between(before[i], after[i], moment));
+            between(front, rear, part)
+        };
         // A place of the hull between two of the piece's own is off the piece by at most that much.
         let off = 0.25 * turned;
         let length = apart(before[0], before[1]).max(apart(after[0], after[1]));
         let way = apart(before[0], after[0]).max(apart(before[1], after[1]));
         let mut most = 0.0_f64;
-        // The parts of the piece and of the step, by their middle and half of their extent, and how deep they may be.
-        let mut open = vec![([0.5; 2], [0.5 * length, 0.5 * way], f64::INFINITY)];
-        while let Some(([part, moment], [half_length, half_way], within)) = open.pop() {
+        // The parts of the piece and of the step, by their middle and half of their share, and how deep they may be.
+        let mut open = vec![([0.5; 2], [0.5; 2], f64::INFINITY)];
+        while let Some(([part, moment], [half_part, half_moment], within)) = open.pop() {
             if within <= most {
                 continue;
             }
-            let [front, rear] = [0, 1].map(|i| between(before[i], after[i], moment));
-            let depth = -self.room(between(front, rear, part));
-            let bound = depth + half_length + half_way;
-            if bound.is_nan() {
+            let (half_length, half_way) = (half_part * length, half_moment * way);
+            let (room, nearest) = self.room_and_nearest(at(part, moment));
+            let depth = -room;
+            let around = depth + half_length + half_way;
+            if around.is_nan() {
                 return f64::INFINITY;
             }
-            if half_length + half_way <= ROUNDED_M.max(ROUNDED * depth) || -bound - off - swept.most >= swept.enough {
+            let bound = nearest.map_or(around, |segment| {
+                let segment = &self.segments[segment as usize];
+                let corner = |s: f64, t: f64| segment.squared(at(part + s * half_part, moment + t * half_moment));
+                let corners = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, -1.0), corner(1.0, 1.0)];
+                around.min(corners.into_iter().fold(0.0, f64::max).sqrt())
+            });
+            if bound - depth <= ROUNDED_M.max(ROUNDED * depth) || -bound - off - swept.most >= swept.enough {
                 most = most.max(bound);
             } else if half_length >= half_way {
-                let by = 0.5 * half_length / length;
-                open.extend([part - by, part + by].map(|part| ([part, moment], [0.5 * half_length, half_way], bound)));
+                let by = 0.5 * half_part;
+                open.extend([part - by, part + by].map(|part| ([part, moment], [by, half_moment], bound)));
             } else {
-                let by = 0.5 * half_way / way;
-                open.extend([moment - by, moment + by].map(|at| ([part, at], [half_length, 0.5 * half_way], bound)));
+                let by = 0.5 * half_moment;
+                open.extend([moment - by, moment + by].map(|moment| ([part, moment], [half_part, by], bound)));
             }
         }
         most + off
@@ -391,8 +429,8 @@ impl Segment {
         [share * self.along[0] - e[0], share * self.along[1] - e[1]]
     }
 
-    /// The shortest way from the hull of four points to the segment. `None` if they touch.
-    fn gap(&self, corners: &[Point; 4]) -> Option<Point> {
+    /// The shortest way from the hull of four points to the segment. `None` if they touch. `pairs`: those of the points ([`pairs`]).
+    fn gap(&self, corners: &[Point; 4], pairs: &[Self; 6]) -> Option<Point> {
         let (a, b) = (self.a, self.b);
         let mut least = (f64::INFINITY, [0.0; 2]);
         let mut shorter = |gap: Point| {
@@ -402,16 +440,11 @@ impl Segment {
             }
         };
         corners.iter().for_each(|p| shorter(self.towards(*p)));
-        // All pairs: the order of the corners around the hull does not matter.
-        for i in 0..4 {
-            for j in i + 1..4 {
-                let (p, q) = (corners[i], corners[j]);
-                if cross(p, q, a, b) {
-                    return None;
-                }
-                let pair = Self::new([p, q]);
-                [a, b].into_iter().for_each(|end| shorter(pair.towards(end).map(|x| -x)));
+        for pair in pairs {
+            if cross(pair.a, pair.b, a, b) {
+                return None;
             }
+            [a, b].into_iter().for_each(|end| shorter(pair.towards(end).map(|x| -x)));
         }
         let within = (0..4).any(|left_out| {
             let [p, q, r] = [1, 2, 3].map(|k| corners[(left_out + k) % 4]);
@@ -421,6 +454,11 @@ impl Segment {
         });
         (!within).then_some(least.1)
     }
+}
+
+/// The segments between all pairs of four points: the order of the points around their hull does not matter.
+fn pairs(points: &[Point; 4]) -> [Segment; 6] {
+    [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]].map(|pair| Segment::new(pair.map(|k| points[k])))
 }
 
 /// Whether two segments cross.
@@ -565,7 +603,8 @@ mod tests {
             let ends = |at: Point| [at, [at[0] - 1.2 * cos, at[1] - 1.2 * sin]];
             let (before, after) = (ends(at), ends([at[0] + 0.4 * cos - 0.1 * sin, at[1] + 0.4 * sin + 0.1 * cos]));
             let corners = [before[0], before[1], after[1], after[0]];
-            let gaps: Option<Vec<Point>> = area.segments().map(|s| Segment::new(s).gap(&corners)).collect();
+            let gaps: Option<Vec<Point>> =
+                area.segments().map(|s| Segment::new(s).gap(&corners, &pairs(&corners))).collect();
             let swept = Swept { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2] };
             let (room, leeway) = ground.swept(&swept, false);
             let Some(gaps) = gaps else {
