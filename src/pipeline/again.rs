@@ -136,21 +136,21 @@ impl Again<'_> {
                 Ok(())
             });
         }
+        let mut again = Vec::new();
         let made = edges.into_iter().zip(plans).zip(turns).zip(verdicts).zip(edge_changes);
-        let of_set = |(set, ((((edges, plans), turns), verdicts), edge_changes)): (&mut StoredSet, _)| {
+        for (set, ((((edges, plans), turns), verdicts), edge_changes)) in sets.into_iter().zip(made) {
             set.edges = verdicts;
             let mut turn_changes = VerdictChanges::default();
             if let Some(known) = &mut set.turns {
-                let turns: &Vec<TurnCertificate> = &turns;
                 turns.iter().for_each(|made| turn_changes.replace(known, made.turn, made.conclusion.verdict));
             }
             let (vehicle, policy) = (set.model.vehicle.id.clone(), settings.policy);
-            MadeAgain {
+            again.push(MadeAgain {
                 set: SetRenewal { vehicle, policy, edges, plans, turns },
                 edges: edge_changes,
                 turns: set.turns.as_ref().map(|_| turn_changes),
-            }
-        };
-        sets.into_iter().zip(made).map(of_set).collect()
+            });
+        }
+        again
     }
 }

@@ -20,8 +20,8 @@ use crate::turns::{TurnFacts, junction_areas, junction_places};
 const MOST_TOUCHED: usize = 500;
 const ONE_IN: usize = 20;
 
-/// Certifies again what newer roads touch. Returns what to write, and the account of all certificates. `None` if rows cannot be changed in place: an edge or a turn gets another number, too much is touched,
-/// or the database is not the one of the roads that were read for it.
+/// Certifies again what newer roads touch. Returns what to write, and the account of all certificates. `None` if rows cannot be changed in
+/// place: an edge or a turn gets another number, too much is touched, or the database is not the one of the roads that were read for it.
 pub(super) fn amendment<'a>(
     stored: &'a mut Stored<'_>,
     after: &'a Portion,
