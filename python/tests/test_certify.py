@@ -131,14 +131,20 @@ def long_corridor() -> netcert.Corridor:
 def test_ctrl_c_interrupts_and_the_next_call_works(catalogue, bend):
     """A signal arrives while the kernel works, as Ctrl-C sends it."""
     import _thread
+    import signal
 
     corridor, vehicle = long_corridor(), catalogue["AU-ATRIPLE53"]
+    # A shell starts a command in the background with this signal ignored. Python then ignores it, too.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.3, _thread.interrupt_main)
     timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        for _ in range(1000):
-            netcert.certify(corridor, vehicle)
-    timer.join()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            for _ in range(1000):
+                netcert.certify(corridor, vehicle)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, before)
     assert netcert.certify(bend, catalogue["EU-SEMI16.5"]).safe
 
 
