@@ -75,16 +75,16 @@ pub(super) enum Certificates {
     /// The verdicts, if rows may be changed in place, and the connection that lets no other program change the database meanwhile.
     InPlace(Database, Vec<StoredSet>),
     /// All that they say.
-    Read(Kept),
+    Read(KeptSets),
 }
 
 /// Certificates, and the areas of junctions by node.
-pub(super) struct Kept {
+pub(super) struct KeptSets {
     sets: Vec<Set>,
     junctions: Vec<JunctionArea>,
 }
 
-impl Kept {
+impl KeptSets {
     fn read(database: &mut Database, vehicles: &[String], settings: &Settings) -> Result<Self, RunError> {
         let mut sets = Vec::new();
         for id in vehicles {
@@ -114,7 +114,7 @@ impl<'a> Stored<'a> {
                 return Ok((measures, Certificates::InPlace(db, sets)));
             }
             let mut db = Database::open(&path)?;
-            Ok::<_, RunError>((db.edge_measures()?, Certificates::Read(Kept::read(&mut db, &vehicles, settings)?)))
+            Ok::<_, RunError>((db.edge_measures()?, Certificates::Read(KeptSets::read(&mut db, &vehicles, settings)?)))
         };
         // Not on rayon's threads, which build the newer network meanwhile: these wait for SQLite most of the time.
         let (roads, of_database) = std::thread::scope(|scope| {
@@ -154,11 +154,11 @@ impl Earlier {
         }
         let Stored { database, vehicles, roads: Portion { network: old, .. }, facts, measures, certificates, .. } =
             stored;
-        let Kept { sets, junctions } = match certificates {
+        let KeptSets { sets, junctions } = match certificates {
             Certificates::Read(kept) => kept,
             Certificates::InPlace(locked, _) => {
                 drop(locked);
-                Kept::read(database, &vehicles, settings)?
+                KeptSets::read(database, &vehicles, settings)?
             }
         };
         let whole =

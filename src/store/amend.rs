@@ -75,6 +75,8 @@ async fn set_box(c: &mut SqliteConnection, layers: &'static str, around: Option<
 struct Changed {
     index: u32,
     row: EdgeRow,
+    /// Whether the row has the measures of its corridor. If not, those of the database stand.
+    measured: bool,
     road: Rc<RoadRow>,
     ranges: Ranges,
 }
@@ -128,9 +130,9 @@ impl EdgeChanges {
             row_before.road = row.road;
             let measure = measures.next_if(|(edge, _)| *edge == index);
             if *road_differs || row != row_before || measure.is_some() {
+                let (measured, road, ranges) = (measure.is_some(), Rc::clone(road), ranges.clone());
                 let measure = measure.map_or_else(EdgeMeasure::default, |(_, measure)| *measure);
-                let (road, ranges) = (Rc::clone(road), ranges.clone());
-                found.changed.push(Changed { index, row: EdgeRow { measure, ..row }, road, ranges });
+                found.changed.push(Changed { index, row: EdgeRow { measure, ..row }, measured, road, ranges });
             }
         }
         match measures.next() {
@@ -166,11 +168,10 @@ async fn edges(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Optio
         let update = by.into_iter().fold(sqlx::query(sql), Query::bind);
         update.bind(edges.start() + 1).bind(edges.end() + 1).execute(&mut *c).await?;
     }
-    let again: rustc_hash::FxHashSet<u32> = amendment.measures.iter().map(|(edge, _)| *edge).collect();
     let (mut bulk, mut boxes) = (Bulk::new("edge", 37), Bulk::new("rtree_edge_geom", 5));
-    for Changed { index, mut row, road, ranges } in changed {
+    for Changed { index, mut row, measured, road, ranges } in changed {
         let fid = i64::from(index) + 1;
-        if !again.contains(&index) {
+        if !measured {
             let sql = "SELECT min_radius_m, centreline_deviation_m FROM edge WHERE fid = ?";
             let (min_radius_m, centreline_deviation_m) = sqlx::query_as(sql).bind(fid).fetch_one(&mut *c).await?;
             row.measure = EdgeMeasure { length_m: None, min_radius_m, centreline_deviation_m };

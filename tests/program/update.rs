@@ -223,28 +223,34 @@ fn real_changes(opl: &str, seed: u64) -> String {
     format!("{text}</modify><delete>{gone}</delete></osmChange>")
 }
 
-#[test]
-fn a_real_region_with_hundreds_of_changes_is_that_of_ingesting_it_anew() {
-    let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
+/// Databases of Sydney, `old.gpkg` and `new.gpkg`: before and after the changes `c.osc`, which are made from osmium's text form of the extract.
+fn sydney_before_and_after(changes: impl Fn(&str) -> String) -> Option<Place> {
+    let path = extracts::extract("sydney_au.osm.pbf")?;
     let place = Place::empty().file("none.osc", format!("{HEAD}</osmChange>"));
     // osmium does not keep the box of the header, by which edges near the border are marked.
-    let Some(()) = osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]) else {
+    if osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]).is_none() {
         println!("skipped: no osmium");
-        return;
-    };
+        return None;
+    }
     osmium(&place, &["cat", "old.osm.pbf", "-o", "old.opl"]).unwrap();
     let opl = String::from_utf8(place.read("old.opl")).unwrap();
-    std::fs::write(place.path("c.osc"), real_changes(&opl, 5)).unwrap();
+    std::fs::write(place.path("c.osc"), changes(&opl)).unwrap();
     osmium(&place, &["apply-changes", "old.osm.pbf", "c.osc", "-o", "new.osm.pbf"]).unwrap();
     for name in ["old", "new"] {
         run(&place, &format!("ingest {name}.osm.pbf {MADE}")).succeeds();
     }
+    Some(place)
+}
+
+#[test]
+fn a_real_region_with_hundreds_of_changes_is_that_of_ingesting_it_anew() {
+    let Some(place) = sydney_before_and_after(|opl| real_changes(opl, 5)) else { return };
     run(&place, "update --db old.gpkg c.osc").succeeds();
     same(&place.path("new.gpkg"), &place.path("old.gpkg"));
 }
 
-/// Changes of a real region that leave all numbers of edges and turns: one road in fifty gets a width and a name, some nodes move, one road gets a
-/// node more, and a turn is forbidden.
+/// Changes of a real region that leave all numbers of edges and turns: one road in fifty gets a width and a name, another one a speed limit, and
+/// some get a node more, so that all positions after it move.
 fn few_changes(opl: &str) -> String {
     let mut text = format!("{HEAD}<modify>\n");
     let mut created = String::new();
@@ -290,19 +296,7 @@ fn few_changes(opl: &str) -> String {
 
 #[test]
 fn a_few_changes_of_a_real_region_change_few_pages() {
-    let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
-    let place = Place::empty().file("none.osc", format!("{HEAD}</osmChange>"));
-    let Some(()) = osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]) else {
-        println!("skipped: no osmium");
-        return;
-    };
-    osmium(&place, &["cat", "old.osm.pbf", "-o", "old.opl"]).unwrap();
-    let opl = String::from_utf8(place.read("old.opl")).unwrap();
-    std::fs::write(place.path("c.osc"), few_changes(&opl)).unwrap();
-    osmium(&place, &["apply-changes", "old.osm.pbf", "c.osc", "-o", "new.osm.pbf"]).unwrap();
-    for name in ["old", "new"] {
-        run(&place, &format!("ingest {name}.osm.pbf {MADE}")).succeeds();
-    }
+    let Some(place) = sydney_before_and_after(few_changes) else { return };
     // A set with settings of its own is brought up to date, too.
     for name in ["old", "new"] {
         run(&place, &format!("certify --db {name}.gpkg --vehicle AU-BDOUBLE26 --corridor lane")).succeeds();

@@ -244,7 +244,7 @@ impl Ground {
         self.room_and_nearest(p).0
     }
 
-    /// Room of a place, and the nearest segment. Inside there is none beyond [`FAR_M`].
+    /// Room of a place, and the nearest segment: `None` for a place inside that is farther than [`FAR_M`] from all of them.
     fn room_and_nearest(&self, p: Point) -> (f64, Option<u32>) {
         let near = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p);
         let far = near.0.sqrt();
