@@ -19,8 +19,9 @@ const TIGHT_M: [(f64, f64); 2] = [(6.0, 0.25), (25.0, 0.5)];
 /// How often station spacing may be halved where stations step over transitions and would not form a curve. A carter's
 /// corner has transitions of half a metre.
 const HALVINGS: usize = 2;
-/// The area counts from this far before a path leaves its road, metres.
-const BEFORE_M: f64 = 3.0;
+/// The area counts from this far before a path leaves its road, metres. Where half-widths open at the joint, a certificate along the
+/// corridor deducts a part of the kink. The area has no such kink, so it should count as soon as a front reaches the joint.
+const BEFORE_M: f64 = 8.0;
 /// The area counts until the longest vehicle's rear is this far on the road that it joins, metres.
 const BEYOND_M: f64 = 5.0;
 

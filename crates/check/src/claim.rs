@@ -22,6 +22,10 @@ const NOTHING_M: f64 = 50.0;
 /// amounts for what lies between their steps.
 const LIMITING_TOLERANCE_M: f64 = 0.06;
 
+/// The same where the corridor ends in a bend: beyond the end the road goes straight on, and the prover deducts more for the jump of the
+/// curvature.
+const LIMITING_AT_END_M: f64 = 0.2;
+
 /// In areas the prover looks at boundaries up to 4 m away only, and measures only the pieces of bodies that may have the least room. An
 /// RSC of this much is therefore a bound, but its place may have more room, metres.
 const ROOMY_M: f64 = 2.0;
@@ -205,14 +209,15 @@ impl<'a> Subject<'a> {
         let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
         let beyond = LIMITING_BEYOND as usize;
         let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
-        // Where half-widths kink, the prover deducts half the kink, which it may have stepped over. The checker
+        // Where half-widths kink, the prover deducts a part of the kink, which it may have stepped over. The checker
         // examines the kink itself.
-        let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
-        // Where much room is left or missing, the two programs differ by more, but nothing depends on it.
-        let target = rsc_m + LIMITING_TOLERANCE_M + 0.25 * rsc_m.abs();
+        let kink_m = self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
+        let tolerance_m = if self.road.ends_in_a_bend(&near) { LIMITING_AT_END_M } else { LIMITING_TOLERANCE_M };
+        // Where much room is left, the two programs differ by more, but nothing depends on it. Where room is missing, nothing is promised.
+        let target = (rsc_m + tolerance_m + kink_m + 0.25 * rsc_m.abs()).max(0.0);
         let (about, all) = (filtered.steps(near.clone()), filtered.steps(own));
         let in_areas = [(about.start.max(all.start)..about.end.min(all.end), target)];
-        targets[side][near].fill(target + kink_m);
+        targets[side][near].fill(target);
         let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty()
             && filtered.cramped(&in_areas, Some((unit, side)))[0].is_none();
         roomy.then(|| {

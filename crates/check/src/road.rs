@@ -10,6 +10,8 @@ use netcert_base::corridor::Corridor;
 /// a larger deviation is an error. On the map's strokes nothing is confirmed on that stretch.
 const PLACE_TOLERANCE_M: f64 = 0.02;
 const HEADING_TOLERANCE_RAD: f64 = 0.04;
+/// Roads of less curvature are straight, 1/m.
+const BENT: f64 = 1e-3;
 /// Largest turn of a corridor from one station to the next, radians. Beyond it the proof's second order says little.
 const MOST_TURN_RAD: f64 = 0.5;
 /// Bound of half-widths that tags and users can mean, metres.
@@ -205,6 +207,13 @@ impl Road {
             0.5 * (a + c) - b
         };
         (stations.start.max(1)..stations.end.min(self.len() - 1)).map(below).fold(0.0, f64::max)
+    }
+
+    /// Whether some stretches of the corridor, counted from its first station, reach an end of it that lies in a bend.
+    pub(crate) fn ends_in_a_bend(&self, stretches: &std::ops::Range<usize>) -> bool {
+        let last = self.count - 1;
+        let bent = |k: usize, end: usize| self.bends.get(self.lead + k).is_some_and(|bend| bend[end].abs() > BENT);
+        stretches.start == 0 && bent(0, 0) || stretches.end == last && last > 0 && bent(last - 1, 1)
     }
 
     /// On the stretches between `from` and `to` (stations): the greatest curvature towards a side (0 left, 1 right),
