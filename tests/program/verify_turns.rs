@@ -57,15 +57,18 @@ fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
     assert!(safe[4].parse::<u32>().unwrap() > 50, "{told}");
 }
 
-/// Fronts pass corners of junctions by centimetres there. The checker confirms them only if it also tries other directions than the shortest way.
+/// Fronts pass corners of junctions by centimetres there. The checker confirms them only if it also tries other directions than the shortest way. Two
+/// edges are unsafe for AU-SEMI19 in sharp bends, where the prover's limiting place lacks less than its RSC says.
 #[test]
-fn safe_turns_of_a_town_are_confirmed() {
+fn all_claims_of_a_town_are_confirmed() {
     let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
     let place = Place::empty();
-    let made = "--db town.gpkg --vehicle EU-SEMI16.5 --corridor carriageway";
+    let made = "--db town.gpkg --vehicle EU-SEMI16.5 --vehicle AU-SEMI19 --corridor carriageway --needs off";
     place.netcert(&format!("ingest {} {made}", path.display())).succeeds();
     let told = place.netcert("verify --db town.gpkg").succeeds().out();
-    let mut rows = told.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
-    let safe = rows.find(|words| words.starts_with(&["EU-SEMI16.5", "carriageway", "turns", "safe"])).unwrap();
-    assert!(safe[4].parse::<u32>().unwrap() > 250, "{told}");
+    for (vehicle, turns) in [("EU-SEMI16.5", 250), ("AU-SEMI19", 240)] {
+        let mut rows = told.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let safe = rows.find(|words| words.starts_with(&[vehicle, "carriageway", "turns", "safe"])).unwrap();
+        assert!(safe[4].parse::<u32>().unwrap() > turns, "{told}");
+    }
 }
