@@ -213,7 +213,8 @@ impl<'a> Subject<'a> {
         // examines the kink itself.
         let kink_m = self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
         let tolerance_m = if self.road.ends_in_a_bend(&near) { LIMITING_AT_END_M } else { LIMITING_TOLERANCE_M };
-        // Where much room is left, the two programs differ by more, but nothing depends on it. Where room is missing, nothing is promised.
+        // Where much room is left, the two programs differ by more, but nothing depends on it. Where room is missing, nothing is promised:
+        // it is enough that room is missing at the place.
         let target = (rsc_m + tolerance_m + kink_m + 0.25 * rsc_m.abs()).max(0.0);
         let (about, all) = (filtered.steps(near.clone()), filtered.steps(own));
         let in_areas = [(about.start.max(all.start)..about.end.min(all.end), target)];
