@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{Area, AreaSpan, Corridor};
 
 /// Vertices this close to the line between their neighbours are removed, metres.
-const COLLINEAR_M: f64 = 5e-4;
+const COLLINEAR_M: f64 = 2e-3;
 /// Road before a corridor that a vehicle may stand on when the steer axle is at the corridor's beginning, metres.
 const BEHIND_M: f64 = 70.0;
 /// Road after a corridor that the vehicle's front may reach, metres.

@@ -7,7 +7,7 @@ mod field;
 mod score;
 
 use field::Field;
-use score::Scorer;
+use score::{Score, Scorer};
 
 use super::Reach;
 use super::code::{PARAMETERS, PathCode};
@@ -21,6 +21,8 @@ const EASY_M: f64 = 0.3;
 /// Turns whose best seed scores less are given up, metres: for vehicles up to 20 m, and for longer ones. On Sydney and Heidelberg no turn
 /// became safe whose best seed scored less than -0.84 m, and -1.42 m for a B-double.
 const HOPELESS_M: [f64; 2] = [-1.1, -1.5];
+/// Seeds that score even less by this are kept only where none scores more, metres.
+const FAR_M: f64 = 0.5;
 /// Distances between the moments at which seeds and refined paths are scored, metres.
 const COARSE_M: f64 = 2.0;
 const FINE_M: f64 = 1.0;
@@ -38,8 +40,16 @@ const AROUND_M: f64 = 80.0;
 pub struct Planned {
     /// Its code.
     pub code: i64,
-    /// Its score, metres: about the leeway that a certificate may find.
+    /// Its score, metres: about the leeway that a certificate may find, less what steering and hinges lack.
     pub score_m: f64,
+    /// About the leeway that a certificate may find, metres.
+    pub room_m: f64,
+}
+
+impl Planned {
+    const fn new(code: i64, Score { score_m, room_m }: Score) -> Self {
+        Self { code, score_m, room_m }
+    }
 }
 
 /// Plans paths of one turn, for any vehicles of its length class.
@@ -64,7 +74,7 @@ impl<'a> Planner<'a> {
     pub fn plan(&mut self, vehicle: &Vehicle) -> Vec<Planned> {
         let made = self.made;
         let mut scorer = Scorer::new(made, vehicle);
-        let mut best = self.seeds(&mut scorer, KEPT);
+        let mut best = self.seeds(&mut scorer, KEPT, self.hopeless_m() - FAR_M);
         let Some(first) = best.first().copied() else { return best };
         if first.score_m >= EASY_M || first.score_m < self.hopeless_m() || PathCode::decode(first.code).is_none() {
             return best;
@@ -92,23 +102,27 @@ impl<'a> Planner<'a> {
     #[must_use]
     pub fn best_seeds(&mut self, vehicle: &Vehicle, count: usize) -> Vec<Planned> {
         let made = self.made;
-        self.seeds(&mut Scorer::new(made, vehicle), count)
+        self.seeds(&mut Scorer::new(made, vehicle), count, f64::NEG_INFINITY)
     }
 
-    fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize) -> Vec<Planned> {
+    /// The `count` seeds with the best scores, the best one first. Only the best one may score less than `least_m`.
+    fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize, least_m: f64) -> Vec<Planned> {
         let mut best: Vec<Planned> = Vec::new();
         for code in self.made.seeds() {
-            let floor_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
-            let Some(score_m) = self.score_m(scorer, code, (COARSE_M, floor_m)).filter(|m| *m > floor_m) else {
-                continue;
-            };
-            let place = best.partition_point(|known| known.score_m >= score_m);
-            best.insert(place, Planned { code, score_m });
+            let first_m = best.first().map_or(f64::NEG_INFINITY, |first| first.score_m);
+            let last_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
+            let floor_m = last_m.max(first_m.min(least_m));
+            let Some(score) = scorer.score(&mut self.field, code, (COARSE_M, floor_m)) else { continue };
+            let place = best.partition_point(|known| known.score_m >= score.score_m);
+            best.insert(place, Planned::new(code, score));
             best.truncate(count);
         }
+        let others = best.partition_point(|known| known.score_m >= least_m).max(1);
+        best.truncate(others);
         for planned in &mut best {
-            let fine = self.score_m(scorer, planned.code, (FINE_M, f64::NEG_INFINITY));
-            planned.score_m = fine.unwrap_or(planned.score_m);
+            if let Some(fine) = scorer.score(&mut self.field, planned.code, (FINE_M, f64::NEG_INFINITY)) {
+                *planned = Planned::new(planned.code, fine);
+            }
         }
         best.sort_by(|a, b| b.score_m.total_cmp(&a.score_m).then(a.code.cmp(&b.code)));
         best
@@ -126,13 +140,12 @@ impl<'a> Planner<'a> {
                 *to += step * sign;
             }
             let other = other.clamped();
-            let better =
-                if other == at { None } else { self.score_m(scorer, other.encode(), (FINE_M, planned.score_m)) };
-            if let Some(score_m) = better.filter(|m| *m > planned.score_m) {
+            let better = || scorer.score(&mut self.field, other.encode(), (FINE_M, planned.score_m));
+            if let Some(score) = (other != at).then(better).flatten() {
                 // What helped once is tried again, but not the way back.
                 (at, failed) = (other, 1);
-                *planned = Planned { code: at.encode(), score_m };
-                if score_m >= EASY_M {
+                *planned = Planned::new(at.encode(), score);
+                if planned.score_m >= EASY_M {
                     return;
                 }
                 continue;
@@ -147,10 +160,6 @@ impl<'a> Planner<'a> {
                 failed = 0;
             }
         }
-    }
-
-    fn score_m(&mut self, scorer: &mut Scorer<'_>, code: i64, how: (f64, f64)) -> Option<f64> {
-        scorer.score_m(&mut self.field, code, how)
     }
 }
 

@@ -22,6 +22,15 @@ const CRITICAL: usize = 3;
 /// Way that the rear goes on the road that a path joins before the score ends, metres.
 const BEYOND_M: f64 = 5.0;
 
+/// How well a path fits, metres.
+#[derive(Clone, Copy)]
+pub(super) struct Score {
+    /// The score.
+    pub(super) score_m: f64,
+    /// The least room alone.
+    pub(super) room_m: f64,
+}
+
 /// Scores paths of one turn for one vehicle.
 pub(super) struct Scorer<'a> {
     made: &'a TurnCorridors,
@@ -52,9 +61,9 @@ impl<'a> Scorer<'a> {
         Self { made, vehicle, limits, approach, headings, stands: Vec::new(), critical: [usize::MAX; CRITICAL] }
     }
 
-    /// The score of the path with a code, metres, from moments about `step_m` apart. At most `floor_m` is told of paths that score less. `None` if the
-    /// turn has no such path.
-    pub(super) fn score_m(&mut self, field: &mut Field, code: i64, (step_m, floor_m): (f64, f64)) -> Option<f64> {
+    /// The score of the path with a code, from moments about `step_m` apart. `None` if it is not above `floor_m`, or if the turn has no such
+    /// path.
+    pub(super) fn score(&mut self, field: &mut Field, code: i64, (step_m, floor_m): (f64, f64)) -> Option<Score> {
         let line = self.made.line(code, step_m)?;
         let (units, to) = (&self.vehicle.units, self.made.arms()[1]);
         let [leave, join] = line.joints;
@@ -94,7 +103,7 @@ impl<'a> Scorer<'a> {
             let moment = self.stands.len() / count.max(1) - 1;
             let needed_m = floor_m + PER_RAD_M * beyond_rad;
             if self.critical.contains(&moment) && self.lacks(field, moment, needed_m) {
-                return Some(floor_m);
+                return None;
             }
         }
         let spent_m = PER_RAD_M * beyond_rad;
@@ -105,12 +114,12 @@ impl<'a> Scorer<'a> {
         let (few_m, moment) = self.room_m(field, (0..moments).rev().step_by(FEW), refused_m);
         if few_m <= refused_m {
             self.note(moment);
-            return Some(floor_m);
+            return None;
         }
         let (room_m, moment) = self.room_m(field, 0..moments, needed_m);
         self.note(moment);
-        // Rounding must not make a path better than the floor that is not.
-        Some(if room_m > needed_m { room_m - spent_m } else { floor_m })
+        let score_m = room_m - spent_m;
+        (room_m > needed_m && score_m > floor_m).then_some(Score { score_m, room_m })
     }
 
     /// Least room around the bodies at moments of the path at hand, less the tubes, and the moment that has it. The search ends where it

@@ -31,8 +31,11 @@ impl<'c> Course<'c> {
 
     /// Certifies the vehicle along the best plan. `None` if it would have less leeway than `above_m` even if it followed that plan exactly,
     /// or if corrections are allowed and none is better than none: options without corrections give that certificate.
+    ///
+    /// A vehicle that does not fit is believed to have less leeway than `believed_m`. The belief changes no number: where it is wrong, the
+    /// certificate takes longer.
     #[must_use]
-    pub fn certify(&self, options: &Options, above_m: f64) -> Option<Planned> {
+    pub fn certify(&self, options: &Options, above_m: f64, believed_m: f64) -> Option<Planned> {
         let never = Stop::default();
         let spans = std::slice::from_ref(&self.span);
         let unplanned = Unplanned { track: &self.track, model: self.model, spans, held: &[] };
@@ -43,7 +46,7 @@ impl<'c> Course<'c> {
         let mut swept = Swept::ready(Rc::clone(&self.track), self.model, plan, spans, &never);
         if self.corridor.areas.is_empty() {
             swept.measure_spans();
-        } else if !swept.measure_least(&self.span, above_m) {
+        } else if !swept.measure_least(&self.span, above_m, believed_m) {
             return None;
         }
         let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };

@@ -10,16 +10,17 @@ use super::spans;
 use super::sweep::{Refining, Wanted, sweep_hopeless};
 use super::swept::Swept;
 
-/// Steps with less leeway than this are all measured, metres: SHRINK asks for those that fail at γ = 1, and for the next ones.
-const KEEP_M: f64 = 0.5;
+/// Steps with less leeway than this are all measured, metres, at γ = 1 and at γ_min: SHRINK asks for those that fail at γ = 1, and for
+/// the next ones. At γ_min these have more leeway.
+const KEEP_M: [f64; 2] = [0.2, 0.5];
 /// A certificate's motion turns along curves, and the nominal one along their chords. The leeway is hardly ever greater than nominal
 /// by more than this, metres.
 const SWERVE_M: f64 = 0.05;
 
 impl Swept<'_> {
     /// The sweeps along the plan, for the least leeway of one span. They end early if even the nominal leeway is less than `above_m`.
-    /// Whether they did not.
-    pub(super) fn measure_least(&mut self, span: &Range<usize>, above_m: f64) -> bool {
+    /// Whether they did not. The least leeway of a vehicle that does not fit is believed to be below `believed_m`.
+    pub(super) fn measure_least(&mut self, span: &Range<usize>, above_m: f64, believed_m: f64) -> bool {
         let nominal = self.swept::<false>(1.0, Wanted { only: Some(span), ..Wanted::PLAIN });
         let stations = || spans::stations(&self.track, span);
         if nominal.least_on(stations()) < above_m {
@@ -28,9 +29,10 @@ impl Swept<'_> {
         let mut fits = nominal.room_on(stations());
         let mut least = Minima::default();
         if !fits {
-            let [full, tight] = self.hopeless(span, nominal.floor + SWERVE_M);
+            let [full, tight] = self.hopeless(span, believed_m.min(nominal.floor + SWERVE_M));
             // The nominal motion is not quite that of a certificate.
-            fits = !spans::least(&self.track, self.model, span, &tight).fails();
+            let ended = tight.floor == f64::NEG_INFINITY;
+            fits = !ended && !spans::least(&self.track, self.model, span, &tight).fails();
             (self.full, least, self.bare) = (full, tight, !fits);
         }
         self.nominal = Some(nominal);
@@ -39,25 +41,26 @@ impl Swept<'_> {
             self.add_adjoint(span, KEEP_M);
             // Where a hinge alone fails, SHRINK may find more room than that everywhere.
             if self.at_full(span).too_far_only() {
-                self.add_adjoint(span, f64::INFINITY);
+                self.add_adjoint(span, [f64::INFINITY; 2]);
             }
         }
         true
     }
 
-    /// Sweeps with the adjoint at γ = 1, and at γ_min if that fails. Steps in areas with less leeway than `keep_m` are noted.
-    fn add_adjoint(&mut self, span: &Range<usize>, keep_m: f64) {
+    /// Sweeps with the adjoint at γ = 1, and at γ_min if that fails. Steps in areas with less leeway than
+    /// `keep_m` are noted.
+    fn add_adjoint(&mut self, span: &Range<usize>, keep_m: [f64; 2]) {
         let blocks = self.blocks(|_| true);
-        let wanted = Wanted {
+        let wanted = keep_m.map(|keep| Wanted {
             blocks: Some(&blocks),
             refining: Refining::WhereLoose,
             only: Some(span),
-            keep: keep_m,
+            keep,
             ..Wanted::ALL
-        };
-        self.full = self.swept::<true>(1.0, wanted);
+        });
+        self.full = self.swept::<true>(1.0, wanted[0]);
         if self.at_full(span).fails() {
-            self.least = Some(self.swept::<true>(0.0, wanted));
+            self.least = Some(self.swept::<true>(0.0, wanted[1]));
         }
     }
 

@@ -42,7 +42,7 @@ pub(super) fn measure(all: &mut [Swept<'_>], marks: Marks, stop: &Stop) {
     for swept in all {
         match (marks, swept.spans) {
             (Marks::Ends, [only]) if !swept.track.areas.is_empty() => {
-                swept.measure_least(only, f64::NEG_INFINITY);
+                swept.measure_least(only, f64::NEG_INFINITY, f64::INFINITY);
             }
             _ => rest.push(swept),
         }
