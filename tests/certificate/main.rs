@@ -6,6 +6,7 @@ mod areas;
 mod corrcen;
 mod ends;
 mod errata;
+mod hinges;
 mod no_curve;
 #[path = "../oracle/mod.rs"]
 mod oracle;

@@ -170,6 +170,6 @@ pub(crate) fn along(p: [f64; 2], by: f64, u: [f64; 2]) -> [f64; 2] {
 }
 
 fn planned(road: &Road, shift: &impl Fn(f64) -> f64, s: f64) -> [f64; 2] {
-    let place = road.place(s);
-    along(place.c, shift(s), [-place.t[1], place.t[0]])
+    let (place, t) = road.course(s);
+    along(place, shift(s), [-t[1], t[0]])
 }

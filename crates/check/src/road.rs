@@ -149,6 +149,31 @@ impl Road {
     /// The centreline at `s` (in stations, extensions included).
     pub(crate) fn place(&self, s: f64) -> Place {
         let (k, x) = self.split(s);
+        self.curve(k, x)
+    }
+
+    /// Place and direction at `s` on the centreline as the plan takes it. It meets the next station in place and direction (A1), by a
+    /// cubic over the whole stretch. Otherwise the course would jump at the station.
+    pub(crate) fn course(&self, s: f64) -> ([f64; 2], [f64; 2]) {
+        let (k, x) = self.split(s);
+        let Place { c, t, .. } = self.curve(k, x);
+        let Some(next) = self.stations.get(k + 1) else { return (c, t) };
+        let end = self.curve(k, self.spacing);
+        let turn = end.t[0] * next.t[1] - end.t[1] * next.t[0];
+        let aside = [-turn * next.t[1], turn * next.t[0]];
+        let share = x / self.spacing;
+        let (moved, bent) = (share * share * (3.0 - 2.0 * share), share * share * (share - 1.0) * self.spacing);
+        let (rate, bending) = (6.0 * share * (1.0 - share) / self.spacing, share * (3.0 * share - 2.0));
+        let met = |from: [f64; 2], by: f64, bend: f64| {
+            [0, 1].map(|i| from[i] + by * (next.c[i] - end.c[i]) + bend * aside[i])
+        };
+        let direction = met(t, rate, bending);
+        let length = direction[0].hypot(direction[1]).max(0.1);
+        (met(c, moved, bent), direction.map(|part| part / length))
+    }
+
+    /// The centreline `x` metres after station `k`.
+    fn curve(&self, k: usize, x: f64) -> Place {
         let from = self.stations[k];
         let [k0, k1] = self.bends[k];
         if k0 == 0.0 && k1 == 0.0 {

@@ -145,7 +145,8 @@ impl<V: Vector> Motion<V> {
         let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
         // The plan may bend more after the step than before it, above all at the corridor's first station.
         let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
-        let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
+        let next_bend = (vx * later_y - vy * later_x) / (vx * vx + vy * vy + 1e-30);
+        let mut bend_after = next_bend.abs();
         let (mut ahead_x, mut ahead_y) = (V::ZERO, V::ZERO);
         let mut turned_ahead = V::ZERO;
         for unit in 0..group.units {
@@ -213,8 +214,8 @@ impl<V: Vector> Motion<V> {
                 self.along_x[unit] = ax;
                 self.along_y[unit] = ay;
                 let turned = ux * wy - uy * wx;
-                // The plan's chord turns at the station. The unit ahead turns during the step.
-                let folding = if unit == 0 { bend - self.turned[0] } else { turned_ahead - turned };
+                // Until the next station: the plan's chord turns there, and the unit ahead turns on the way.
+                let folding = if unit == 0 { next_bend - turned } else { turned_ahead - turned };
                 self.joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
                 turned_ahead = turned;
                 let change = (turned - self.turned[unit]).abs();
@@ -236,15 +237,16 @@ impl<V: Vector> Motion<V> {
         }
     }
 
-    /// How much farther a hinge may fold between two head stations than at either: an eighth of the second difference.
-    /// The factor is a little larger, because sines of a step's turn are smaller than its angle.
+    /// How much farther a hinge may fold between two head stations than at either: a part of the second difference, at this station or the
+    /// one before. It is an eighth, and a little more because sines of a step's turn are smaller than its angle. The course of the steer
+    /// axle is not at the chord's direction at stations, so the steering takes a quarter (docs/proof.md, section 10).
     #[inline(always)]
     fn overshoot(&mut self, unit: usize, folding: V) -> V {
         let change = (folding - self.folding[unit]).abs();
         let most = change.max(self.folding_change[unit]);
         self.folding[unit] = folding;
         self.folding_change[unit] = change;
-        most * 0.14
+        most * if unit == 0 { 0.25 } else { 0.14 }
     }
 
     /// Computes what curvature adds to the straight gains (docs/proof.md, section 5), and the hinge margins.
