@@ -32,8 +32,8 @@ impl<'c> Course<'c> {
     /// Certifies the vehicle along the best plan. `None` if it would have less leeway than `above_m` even if it followed that plan exactly,
     /// or if corrections are allowed and none is better than none: options without corrections give that certificate.
     ///
-    /// A vehicle that does not fit is believed to have less leeway than `believed_m`. The belief changes no number: where it is wrong, the
-    /// certificate takes longer.
+    /// A vehicle that does not fit is believed to have less leeway than `believed_m`. Where that is wrong, the certificate takes longer. The
+    /// belief changes no verdict. What is missing may be told up to a tenth differently, because depths are rounded as they are found.
     #[must_use]
     pub fn certify(&self, options: &Options, above_m: f64, believed_m: f64) -> Option<Planned> {
         let never = Stop::default();
