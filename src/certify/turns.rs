@@ -35,7 +35,7 @@ const ENOUGH_M: f64 = 0.2;
 const NEARLY_M: f64 = 0.3;
 const MORE_PATHS: usize = 5;
 const MORE_SEEDS: usize = 8;
-/// A certificate hardly ever finds more leeway than a path's score says, and this, metres.
+/// A certificate hardly ever finds more leeway than the room that the planner found, and this, metres.
 const BELIEF_M: f64 = 0.3;
 /// How many seeds [`fits`] certifies.
 const SEEDS: usize = 2;

@@ -27,7 +27,7 @@ const BEYOND_M: f64 = 5.0;
 pub(super) struct Score {
     /// The score.
     pub(super) score_m: f64,
-    /// The least room alone.
+    /// The least room, less the tubes. Steering and hinges do not count.
     pub(super) room_m: f64,
 }
 

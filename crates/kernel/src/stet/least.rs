@@ -30,7 +30,7 @@ impl Swept<'_> {
         let mut least = Minima::default();
         if !fits {
             let [full, tight] = self.hopeless(span, believed_m.min(nominal.floor + SWERVE_M));
-            // The nominal motion is not quite that of a certificate.
+            // The nominal motion is not quite that of a certificate. A sweep that ended early knows no leeway.
             let ended = tight.floor == f64::NEG_INFINITY;
             fits = !ended && !spans::least(&self.track, self.model, span, &tight).fails();
             (self.full, least, self.bare) = (full, tight, !fits);
@@ -47,8 +47,7 @@ impl Swept<'_> {
         true
     }
 
-    /// Sweeps with the adjoint at γ = 1, and at γ_min if that fails. Steps in areas with less leeway than
-    /// `keep_m` are noted.
+    /// Sweeps with the adjoint at γ = 1, and at γ_min if that fails. Steps in areas with less leeway than `keep_m` are noted.
     fn add_adjoint(&mut self, span: &Range<usize>, keep_m: [f64; 2]) {
         let blocks = self.blocks(|_| true);
         let wanted = keep_m.map(|keep| Wanted {
