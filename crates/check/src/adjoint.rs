@@ -17,6 +17,10 @@ const CUT: f64 = 2e-5;
 pub(crate) struct Coefficients {
     /// Mean ρ/L, and the largest difference from the mean.
     rate: [f64; 2],
+    /// How much of a kernel is left a step earlier, and what a source at the start and at the end of the step adds to
+    /// it.
+    decay: f64,
+    sources: [f64; 2],
     /// ρ / (L cos δ), constant over the step.
     pace: f64,
     /// Means of cos χ (1+k) and of cos χ k / cos δ, each with the largest difference from the mean.
@@ -28,13 +32,24 @@ pub(crate) struct Coefficients {
 }
 
 impl Coefficients {
-    pub(crate) fn of(link: &super::link::Link, bend: &super::tubes::Bend) -> Self {
+    pub(crate) fn of(link: &super::link::Link, bend: &super::tubes::Bend, h: f64) -> Self {
         let mean = |[a, b]: [f64; 2]| [0.5 * (a + b), 0.5 * (a - b).abs()];
         let rho = bend.rho();
         let through = bend.cos_chi.map(|c| c * (1.0 + link.k));
         let back = [0, 1].map(|k| bend.cos_chi[k] * link.k * bend.sec[k]);
+        let rate = mean(rho.map(|rho| rho / link.l));
+        let x = rate[0] * h;
+        let decay = (-x).exp();
+        let mean_kernel = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
+        let sources = if x > 1e-3 {
+            [h * (1.0 - mean_kernel) / x, h * (mean_kernel - decay) / x]
+        } else {
+            [h * (0.5 - x / 6.0), h * (0.5 - x / 3.0)]
+        };
         Self {
-            rate: mean(rho.map(|rho| rho / link.l)),
+            rate,
+            decay,
+            sources,
             pace: bend.pace / link.l,
             through: mean(through),
             back: mean(back),
@@ -155,14 +170,7 @@ fn back_one_step<const W: usize>(
         let c = tubes.coefficients(step, i);
         let tube = tubes.get(step, i)?;
         let [rate, rate_off] = c.rate;
-        let x = rate * h;
-        let decay = (-x).exp();
-        let mean = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
-        let (w0, w1) = if x > 1e-3 {
-            (h * (1.0 - mean) / x, h * (mean - decay) / x)
-        } else {
-            (h * (0.5 - x / 6.0), h * (0.5 - x / 3.0))
-        };
+        let (decay, [w0, w1]) = (c.decay, c.sources);
         let slips = c.most_rho * (chain.links[i].sway + tube.z / chain.links[i].l);
         let input = if i == 0 { tubes.tolerance_m + tube.zh } else { tube.zh };
         let mut nu = Kernel::<W>::NONE;

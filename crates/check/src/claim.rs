@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use crate::chain::Chain;
-use crate::leeway::{Shortfall, Swept, Targets, foot};
+use crate::leeway::{Swept, foot};
 use crate::motion::{Motion, STEPS};
 use crate::plane::Cramped;
 use crate::road::{Place, Road, RoadError};
+use crate::search::{Shortfall, Targets};
 use netcert_base::corridor::Corridor;
 
 /// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
@@ -130,29 +131,28 @@ impl<'a> Subject<'a> {
             }
             return findings;
         };
-        let mut shrinks: Vec<f64> = claims.iter().map(|claim| claim.shrink).collect();
-        shrinks.sort_by(f64::total_cmp);
-        shrinks.dedup();
-        let whole = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
-        let whole_filtered = Swept::filtered(self.chain, &self.road, motion, self.chain.tolerance_m);
-        for shrink in shrinks {
-            let spans =
-                claims.iter().filter(|claim| claim.shrink == shrink).map(|claim| self.stretches(&claim.stations));
-            let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
-            let tolerance_m = shrink.min(1.0) * self.chain.tolerance_m;
-            let mut filtered = whole_filtered.within(tolerance_m, range.clone());
-            let mut swept = whole.within(tolerance_m, range);
-            let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
-            self.leeway(&mut swept, claims, &own, &mut findings);
-            self.room(&mut swept, claims, &own, &mut findings);
+        let tolerance = |claim: &SpanClaim| claim.shrink.min(1.0) * self.chain.tolerance_m;
+        let mut tolerances: Vec<f64> = claims.iter().map(tolerance).collect();
+        tolerances.sort_by(f64::total_cmp);
+        tolerances.dedup();
+        let Some(&most) = tolerances.last() else { return findings };
+        let mut whole = Swept::new(self.chain, &self.road, motion, most);
+        for tolerance_m in tolerances {
+            let own: Vec<usize> = (0..claims.len()).filter(|&i| tolerance(&claims[i]) == tolerance_m).collect();
+            let mut part = None;
+            if tolerance_m < most {
+                let spans = own.iter().map(|&i| self.stretches(&claims[i].stations));
+                let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
+                part = Some(whole.within(tolerance_m, range));
+            }
+            let swept = part.as_mut().unwrap_or(&mut whole);
+            self.limiting_places(swept, claims, &own, &mut findings);
+            self.leeway(swept, claims, &own, &mut findings);
+            self.room(swept, claims, &own, &mut findings);
             for i in own {
-                if let Some(short) =
-                    claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin))
-                {
+                let margin = claims[i].hinge_margin_rad;
+                if let Some(short) = margin.and_then(|margin| self.hinges(swept, &claims[i].stations, margin)) {
                     findings[i].push(Finding { unbounded: short.1, ..finding("hinge_margin_deg", &short.0) });
-                }
-                if let Some(found) = self.limiting(&mut filtered, &claims[i]) {
-                    findings[i].push(found);
                 }
             }
         }
@@ -189,8 +189,29 @@ impl<'a> Subject<'a> {
         swept.nominal_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
     }
 
-    /// Checks the limiting place: it must be on the span and have hardly more room than the RSC. The filter's bounds
-    /// decide, because the prover may have used the filter.
+    /// Checks the limiting places of some claims. The filter's bounds decide, because the prover may have used the filter.
+    fn limiting_places(
+        &self,
+        swept: &mut Swept<'_>,
+        claims: &[SpanClaim],
+        own: &[usize],
+        findings: &mut [Vec<Finding>],
+    ) {
+        let mut check = |filtered: &mut Swept<'_>| {
+            for &i in own {
+                findings[i].extend(self.limiting(filtered, &claims[i]));
+            }
+        };
+        if swept.is_filtered() {
+            swept.filter_alone(true);
+            check(swept);
+            swept.filter_alone(false);
+        } else {
+            check(&mut swept.filtered_again());
+        }
+    }
+
+    /// Checks the limiting place: it must be on the span and have hardly more room than the RSC.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
         // How far a body is outside of an area is not measured here (`plane`). Far inside, the prover measures roughly. Between γ = 1 and
@@ -219,8 +240,8 @@ impl<'a> Subject<'a> {
         let (about, all) = (filtered.steps(near.clone()), filtered.steps(own));
         let in_areas = [(about.start.max(all.start)..about.end.min(all.end), target)];
         targets[side][near].fill(target);
-        let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty()
-            && filtered.cramped(&in_areas, Some((unit, side)))[0].is_none();
+        let roomy =
+            !filtered.lacks(&Targets(targets), unit) && filtered.cramped(&in_areas, Some((unit, side)))[0].is_none();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
         })

@@ -15,6 +15,7 @@ use crate::gains::Knots;
 use crate::interval::Interval;
 use crate::motion::{Motion, Pose, STEPS, along};
 use crate::road::{Place, Road};
+use crate::search::{Shortfalls, Targets};
 use crate::tubes::{Tube, Tubes};
 
 /// Decisions closer than this are repeated in intervals, metres.
@@ -26,7 +27,7 @@ const GAP_M: f64 = 0.03;
 /// Most halvings of a cell: from 15 m of body to 1 mm.
 const MOST_HALVINGS: u32 = 16;
 /// Second derivatives are taken at a cell's corners. Between them they may be greater by this factor.
-const BETWEEN: f64 = 1.25;
+pub(crate) const BETWEEN: f64 = 1.25;
 /// Distance between the points of a body at which the adjoint runs, metres. Bounds are convex, so linear interpolation
 /// is never too small.
 const KNOT_M: f64 = 0.25;
@@ -46,32 +47,14 @@ const ASTRAY_M: f64 = 10.0;
 /// Length of the history in which second-order terms use the adjoint's bounds, in vehicle lengths.
 const HISTORY_LENGTHS: f64 = 1.5;
 
-/// Claimed leeway on each stretch between stations of the corridor, by side (0 left, 1 right), metres. −∞ claims
-/// nothing.
-#[derive(Debug, Clone)]
-pub(crate) struct Targets(pub(crate) [Vec<f64>; 2]);
-
-/// A cell whose bound is below the claim.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Shortfall {
-    /// Station of the corridor, as a real number.
-    pub(crate) station: f64,
-    /// Unit.
-    pub(crate) unit: usize,
-    /// Side (0 left, 1 right).
-    pub(crate) side: usize,
-    /// Body point, metres ahead of the axle.
-    pub(crate) point_m: f64,
-    /// How far the bound is below the claim, metres.
-    pub(crate) short_m: f64,
-}
-
 /// The vehicle on the road along its plan, with tubes at one tolerance.
 pub struct Swept<'a> {
     pub(crate) chain: &'a Chain,
     pub(crate) road: &'a Road,
     pub(crate) motion: &'a Motion,
     pub(crate) tubes: Tubes,
+    /// Metres by which a foot may be from its place on a straight.
+    astray_m: f64,
     /// Steps whose tubes the adjoint has tightened.
     tightened: Vec<bool>,
     /// The adjoint's bounds throughout a step, by unit and step, at knots from the unit's rear end on. NaN means not
@@ -85,7 +68,7 @@ pub struct Swept<'a> {
 
 /// Where a foot is searched from.
 #[derive(Debug, Clone, Copy)]
-struct Hint {
+pub(crate) struct Hint {
     /// Stations of the road. NaN: nowhere yet.
     s: f64,
     /// The road there, if it is known.
@@ -93,24 +76,24 @@ struct Hint {
 }
 
 impl Hint {
-    const NONE: Hint = Hint { s: f64::NAN, place: None };
+    pub(crate) const NONE: Hint = Hint { s: f64::NAN, place: None };
 
-    fn at(s: f64) -> Self {
+    pub(crate) fn at(s: f64) -> Self {
         Self { s, place: None }
     }
 }
 
 /// A corner of a cell.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
+pub(crate) struct Corner {
     /// Foot, in stations of the road.
     s: f64,
     /// The road there.
     place: Place,
     /// Nominal leeway, metres: half-width less lateral place.
-    clear: f64,
+    pub(crate) clear: f64,
     /// Most that the tubes take away, metres.
-    dev: f64,
+    pub(crate) dev: f64,
     /// |second derivative| of the leeway as the point moves, per square metre of the coupling's path.
     bend: f64,
     lateral: f64,
@@ -128,14 +111,14 @@ impl Corner {
 
 /// A cell: one side of one unit in one step.
 #[derive(Debug, Clone, Copy)]
-struct Cell {
-    unit: usize,
-    side: usize,
-    step: usize,
+pub(crate) struct Cell {
+    pub(crate) unit: usize,
+    pub(crate) side: usize,
+    pub(crate) step: usize,
     /// Shares of the step.
-    t: [f64; 2],
-    a: [f64; 2],
-    halvings: u32,
+    pub(crate) t: [f64; 2],
+    pub(crate) a: [f64; 2],
+    pub(crate) halvings: u32,
 }
 
 impl<'a> Swept<'a> {
@@ -149,19 +132,40 @@ impl<'a> Swept<'a> {
     }
 
     fn begin(chain: &'a Chain, road: &'a Road, motion: &'a Motion, mut tubes: Tubes) -> Self {
+        tubes.reserve(motion.steps());
         for _ in 0..motion.steps() {
             tubes.advance(chain, motion);
         }
+        Self::of(chain, road, motion, tubes)
+    }
+
+    fn of(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tubes: Tubes) -> Self {
         Self {
             chain,
             road,
             motion,
             tubes,
+            astray_m: ASTRAY_PART * chain.reach_m().1 + ASTRAY_M,
             tightened: vec![false; motion.steps()],
             exact: HashMap::new(),
             at_nodes: HashMap::new(),
             poses: HashMap::new(),
         }
+    }
+
+    /// Whether no bound comes from the adjoint so far.
+    pub(crate) fn is_filtered(&self) -> bool {
+        self.tubes.is_filtered() && self.exact.is_empty() && self.poses.is_empty()
+    }
+
+    /// Forbids the adjoint, or allows it again.
+    pub(crate) fn filter_alone(&mut self, alone: bool) {
+        self.tubes.filter_alone(alone);
+    }
+
+    /// The same vehicle anew, by the filter's bounds alone.
+    pub(crate) fn filtered_again(&self) -> Self {
+        Self::filtered(self.chain, self.road, self.motion, self.tubes.tolerance_m)
     }
 
     /// The same vehicle at a lesser tolerance, for claims on some stretches only.
@@ -170,17 +174,11 @@ impl<'a> Swept<'a> {
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
         let mut tubes = Tubes::within(&self.tubes, self.chain, steps.start.saturating_sub(history), tolerance_m);
+        tubes.reserve(steps.end.saturating_sub(tubes.first));
         for _ in tubes.first..steps.end {
             tubes.advance(self.chain, self.motion);
         }
-        Self {
-            tubes,
-            tightened: vec![false; self.motion.steps()],
-            exact: HashMap::new(),
-            at_nodes: HashMap::new(),
-            poses: HashMap::new(),
-            ..*self
-        }
+        Self::of(self.chain, self.road, self.motion, tubes)
     }
 
     /// Steps during which some body point may have its foot on the given stretches of the corridor.
@@ -207,43 +205,8 @@ impl<'a> Swept<'a> {
         feet.reduce(|least, s| Some(least?.min(s?))).flatten()
     }
 
-    /// All places where the bound is below the claim: the worst one of each stretch and side. In areas half-widths mean
-    /// nothing, so their steps are left out.
-    pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
-        self.refute_only(targets, None)
-    }
-
-    /// As [`Self::refute`], for one unit only.
-    pub(crate) fn refute_only(&mut self, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
-        let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
-        let stretches = targets.0[0].len();
-        let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
-            return Vec::new();
-        };
-        let mut found = Shortfalls::new(stretches);
-        let mut feet = vec![Hint::NONE; self.chain.links.len() * 4];
-        for step in self.steps(first..last + 1) {
-            if self.road.plane.decides(step) {
-                // Feet move on unseen.
-                feet.fill(Hint::NONE);
-                continue;
-            }
-            for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
-                for side in 0..2 {
-                    let link = &self.chain.links[unit];
-                    let cell = Cell { unit, side, step, t: [0.0, 1.0], a: [link.rear, link.front], halvings: 0 };
-                    let at = (unit * 2 + side) * 2;
-                    let hints = [feet[at], feet[at + 1]];
-                    let ends = self.cell(&cell, hints, targets, &mut found);
-                    feet[at..at + 2].copy_from_slice(&ends);
-                }
-            }
-        }
-        found.worst.into_iter().flatten().flatten().collect()
-    }
-
-    /// Decides a cell. Returns the feet of its ends at its end in time.
-    fn cell(&mut self, cell: &Cell, hints: [Hint; 2], targets: &Targets, found: &mut Shortfalls) -> [Hint; 2] {
+    /// Decides a cell by exact corners.
+    pub(crate) fn cell(&mut self, cell: &Cell, hints: [Hint; 2], targets: &Targets, found: &mut Shortfalls) {
         let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
         // Rough feet: the hint, or the place on a straight road.
         let guess = |k: usize| {
@@ -270,20 +233,19 @@ impl<'a> Swept<'a> {
             } else {
                 found.unbounded(cell, &self.touched(cell, &poses), targets);
             }
-            return [Hint::NONE; 2];
+            return;
         };
         let all = [c00, c01, c10, c11];
         let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
         let (first, last) = self.range([range[0] - 0.01, range[1] + 0.01]);
-        let Some(target) = found.target(targets, cell.side, first, last) else { return feet };
+        let Some(target) = found.target(targets, cell.side, first, last) else { return };
         let base = all.iter().map(|c| c.clear - c.dev).fold(f64::INFINITY, f64::min);
         let (time, body) = self.allowances(cell, &all, range);
         let bound = base - time - body;
         if bound >= target + CLOSE_M || bound >= target && self.sure(cell, &poses, &all, time + body, target) {
-            return feet;
+            return;
         }
         self.undecided(cell, &all, bound - target, [time, body], targets, found, (first, last));
-        feet
     }
 
     /// Halves the cell, sharpens its tubes, or gives it up.
@@ -351,9 +313,14 @@ impl<'a> Swept<'a> {
     }
 
     /// The foot on a straight road, in stations.
-    fn rough_foot(&self, step: usize, unit: usize, a: f64) -> f64 {
+    pub(crate) fn rough_foot(&self, step: usize, unit: usize, a: f64) -> f64 {
         let behind: f64 = self.chain.links[..unit].iter().map(|link| link.l + link.d).sum();
         step as f64 / STEPS as f64 - (behind + self.chain.links[unit].l - a) / self.road.spacing
+    }
+
+    /// Whether a foot is too far from the one on a straight road to be on the same leg. Both in stations.
+    pub(crate) fn astray(&self, s: f64, straight: f64) -> bool {
+        (s - straight).abs() * self.road.spacing > self.astray_m
     }
 
     /// Stretches of the corridor whose normals may pass through a cell: it lies ahead of the stretch's first station
@@ -377,7 +344,7 @@ impl<'a> Swept<'a> {
     }
 
     /// Stretches of the corridor between two feet (stations of the road).
-    fn range(&self, [from, to]: [f64; 2]) -> (usize, usize) {
+    pub(crate) fn range(&self, [from, to]: [f64; 2]) -> (usize, usize) {
         let own = |s: f64| s - self.road.lead as f64;
         let last = self.road.count - 2;
         if own(to) < 0.0 || own(from) > (last + 1) as f64 {
@@ -387,15 +354,14 @@ impl<'a> Swept<'a> {
     }
 
     /// A body point on the side of a cell. `None` without a foot near the guess, or without a bound.
-    fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: Hint) -> Option<Corner> {
+    pub(crate) fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: Hint) -> Option<Corner> {
         let link = &self.chain.links[cell.unit];
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * link.half_width;
         let x = point(pose, a, b);
         let (s, place, lateral) = foot_from(self.road, x, guess)?;
         // Newton's method may have reached another leg of the road, where the vehicle is not.
-        let away = (s - self.rough_foot(cell.step, cell.unit, a)).abs() * self.road.spacing;
-        if away > ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M {
+        if self.astray(s, self.rough_foot(cell.step, cell.unit, a)) {
             return None;
         }
         let n = [-place.t[1], place.t[0]];
@@ -467,7 +433,8 @@ impl<'a> Swept<'a> {
         let length = cell.a[1] - cell.a[0];
         let reach = all.iter().map(|c| c.reach).fold(0.0, f64::max);
         let dip = self.road.dip(cell.side, range[0], range[1], reach);
-        (bend * travel * travel / 8.0, curve * length * length / 8.0 + dip)
+        let askew = |way: f64| self.road.askew(range[0], range[1], way);
+        (bend * travel * travel / 8.0 + askew(travel), curve * length * length / 8.0 + dip + askew(length))
     }
 
     /// Repeats the decision in intervals: the corners' nominal leeway from poses, road and widths.
@@ -628,58 +595,6 @@ pub(crate) fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
     along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
 }
 
-/// The worst shortfall of each stretch and side.
-struct Shortfalls {
-    worst: [Vec<Option<Shortfall>>; 2],
-}
-
-impl Shortfalls {
-    fn new(stretches: usize) -> Self {
-        Self { worst: [vec![None; stretches], vec![None; stretches]] }
-    }
-
-    /// The greatest claim on stretches `first..=last` that is not refuted yet.
-    fn target(&self, targets: &Targets, side: usize, first: usize, last: usize) -> Option<f64> {
-        let mut most = f64::NEG_INFINITY;
-        for k in first..=last {
-            // One refutation per stretch is enough.
-            if self.worst[side][k].is_none() {
-                most = most.max(targets.0[side][k]);
-            }
-        }
-        (most > f64::NEG_INFINITY).then_some(most)
-    }
-
-    fn add(
-        &mut self,
-        cell: &Cell,
-        station: f64,
-        point_m: f64,
-        short_m: f64,
-        (first, last): (usize, usize),
-        targets: &Targets,
-    ) {
-        let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
-        for k in first..=last {
-            let own = short_m - (most - targets.0[cell.side][k]);
-            let slot = &mut self.worst[cell.side][k];
-            if own > 0.0 && slot.is_none_or(|worst| own > worst.short_m) {
-                *slot = Some(Shortfall { station, unit: cell.unit, side: cell.side, point_m, short_m: own });
-            }
-        }
-    }
-
-    fn unbounded(&mut self, cell: &Cell, stretches: &[usize], targets: &Targets) {
-        for &k in stretches {
-            if targets.0[cell.side][k] > f64::NEG_INFINITY {
-                let short_m = f64::INFINITY;
-                self.worst[cell.side][k] =
-                    Some(Shortfall { station: k as f64, unit: cell.unit, side: cell.side, point_m: 0.0, short_m });
-            }
-        }
-    }
-}
-
 impl Swept<'_> {
     /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians. The adjoint is used
     /// if the filter's margin is below `least`. −∞ without bounds.
@@ -714,10 +629,9 @@ impl Swept<'_> {
             [x[0] - place.c[0], x[1] - place.c[1]]
         };
         let off = |node: usize| from(node)[0] * place.t[0] + from(node)[1] * place.t[1];
-        let strays = |step: usize| (self.rough_foot(step, unit, a) - s).abs() * self.road.spacing;
-        let astray = ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M;
+        let strays = |step: usize| (self.rough_foot(step, unit, a) - s).abs();
         let step = (0..self.motion.steps())
-            .filter(|&step| strays(step) <= astray && off(step) < 0.0 && off(step + 1) >= 0.0)
+            .filter(|&step| !self.astray(s, self.rough_foot(step, unit, a)) && off(step) < 0.0 && off(step + 1) >= 0.0)
             .min_by(|&a, &b| strays(a).total_cmp(&strays(b)))?;
         let share = off(step) / (off(step) - off(step + 1));
         let [before, after] = [step, step + 1].map(|node| from(node)[1] * place.t[0] - from(node)[0] * place.t[1]);

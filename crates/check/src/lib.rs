@@ -14,6 +14,8 @@
 //! | `tubes` | the filter and the second order (sections 3 and 5) |
 //! | `adjoint` | the exact time-varying bound (section 6), where the filter is too loose |
 //! | `leeway` | from tubes to leeway (section 7), compared with the claims by branch and bound |
+//! | `coarse` | coarse bounds of leeway, for the many places far above their claim |
+//! | `search` | the search for places below their claim: first by coarse bounds, then by cells |
 //! | `plane` | the same in areas, where bodies are held against a part of the plane |
 //! | `claim` | the claims about one vehicle on one corridor, and their results |
 //! | `printed` | the paper's 𝒞, which decides nothing |
@@ -26,6 +28,7 @@
 mod adjoint;
 mod chain;
 mod claim;
+mod coarse;
 mod gains;
 mod interval;
 mod leeway;
@@ -35,6 +38,7 @@ pub mod plan;
 mod plane;
 pub mod printed;
 mod road;
+mod search;
 mod tubes;
 
 pub use chain::Chain;

@@ -53,7 +53,7 @@ use std::ops::Range;
 use crate::UP;
 use crate::claim::TOLERANCE_M;
 use crate::leeway::{Swept, point};
-use crate::motion::STEPS;
+use crate::motion::{STEPS, length};
 use crate::road::RoadError;
 use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
@@ -240,7 +240,7 @@ impl Piece {
 
     /// How far the piece extends ahead and aside, and how far it moves, metres.
     fn extent(&self, corners: &[Point; 8]) -> [f64; 3] {
-        let moved = |i: usize| (corners[i + 4][0] - corners[i][0]).hypot(corners[i + 4][1] - corners[i][1]);
+        let moved = |i: usize| length([corners[i + 4][0] - corners[i][0], corners[i + 4][1] - corners[i][1]]);
         [(self.a[1] - self.a[0]).abs(), (self.c[1] - self.c[0]).abs(), (0..4).map(moved).fold(0.0, f64::max)]
     }
 
@@ -269,6 +269,9 @@ impl Swept<'_> {
         claims: &[(Range<usize>, f64)],
         only: Option<(usize, usize)>,
     ) -> Vec<Option<Cramped>> {
+        if self.road.plane.spans.is_empty() {
+            return vec![None; claims.len()];
+        }
         // Claims of neighbouring spans share steps.
         let mut proved = vec![f64::NEG_INFINITY; self.motion.steps()];
         claims.iter().map(|(steps, claimed)| self.cramped_in(steps.clone(), *claimed, only, &mut proved)).collect()
@@ -520,7 +523,7 @@ impl Swept<'_> {
             let turned = 0.5 * tube.a * tube.a;
             let across = self.off(step, unit, a, tube) + a.abs() * tube.r1 / self.chain.links[unit].l + c * turned;
             let along = a.abs() * turned + c * tube.a;
-            across.hypot(along) * UP
+            length([across, along]) * UP
         };
         at(piece.a[0]).max(at(piece.a[1]))
     }
@@ -536,7 +539,7 @@ impl Swept<'_> {
         let swing = self.motion.swing(piece.step, piece.unit);
         let q = 1.0 + swing.before * swing.before;
         let sin = if swing.before.abs() < 1.0 { 2.0 * swing.before.abs() / q } else { 1.0 };
-        let reach = |a: f64, c: f64| (a - link.l).hypot(c);
+        let reach = |a: f64, c: f64| length([a - link.l, c]);
         let most = piece.a.iter().flat_map(|&a| piece.c.map(|c| reach(a, c))).fold(0.0, f64::max);
         let (x, share) = (swing.len / link.l, piece.t[1] - piece.t[0]);
         let led = swing.curvature * swing.len / 12.0;
@@ -577,17 +580,13 @@ impl Taken {
 
 /// A vector of the same length, turned by the angle of this tangent.
 fn turned([x, y]: Point, tangent: f64) -> Point {
-    let cosine = 1.0 / 1.0_f64.hypot(tangent);
+    let cosine = 1.0 / length([1.0, tangent]);
     [(x - y * tangent) * cosine, (y + x * tangent) * cosine]
 }
 
 /// The parts of a vector along a heading, and to its left.
 fn framed(m: Point, u: Point) -> [f64; 2] {
     [m[0] * u[0] + m[1] * u[1], m[1] * u[0] - m[0] * u[1]]
-}
-
-fn length([x, y]: Point) -> f64 {
-    x.hypot(y)
 }
 
 /// The least and the greatest coordinates of some points.

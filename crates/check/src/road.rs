@@ -3,6 +3,7 @@
 //! Between stations curvature and half-widths are linear. Before the first and after the last station the road
 //! continues straight (proof, section 8). A corridor whose stations do not fit each other is refused.
 
+use crate::motion::length;
 use crate::plane::Plane;
 use netcert_base::corridor::Corridor;
 
@@ -42,6 +43,22 @@ pub(crate) struct Place {
     pub(crate) curvature: f64,
 }
 
+/// The road between some stations.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Section {
+    /// Greatest curvature to the left and to the right, 1/m, not below 0.
+    pub(crate) bent: [f64; 2],
+    /// Greatest change of the curvature per metre.
+    pub(crate) rate: f64,
+    /// Greatest error bound of a curve, metres, and greatest heading difference at a station, radians.
+    pub(crate) slack: f64,
+    pub(crate) jump: f64,
+    /// Sum of these heading differences.
+    pub(crate) jumps: f64,
+    /// Sum by which the slope of the half-width grows, metres a station.
+    pub(crate) growth: f64,
+}
+
 /// A corridor, extended straight at both ends, in metres relative to its first station.
 #[derive(Debug, Clone)]
 pub(crate) struct Road {
@@ -50,7 +67,7 @@ pub(crate) struct Road {
     /// Stations before the corridor's first, and stations of the corridor itself.
     pub(crate) lead: usize,
     pub(crate) count: usize,
-    stations: Vec<Place>,
+    pub(crate) stations: Vec<Place>,
     /// Curvature at the start and the end of the stretch after each station.
     bends: Vec<[f64; 2]>,
     /// Error bound of the curve after each station against the next station, metres. Sampling a smooth line leaves such
@@ -60,6 +77,8 @@ pub(crate) struct Road {
     jumps: Vec<f64>,
     /// Half-widths, left and right, metres.
     pub(crate) widths: Vec<[f64; 2]>,
+    /// Sums, over all stations before each, by which the slopes of the half-widths grow, metres a station.
+    growth: Vec<[f64; 2]>,
     /// Areas that stand in for the half-widths.
     pub(crate) plane: Plane,
 }
@@ -106,6 +125,7 @@ impl Road {
             widths: Vec::with_capacity(lead + n + tail),
             slack: Vec::with_capacity(lead + n + tail),
             jumps: Vec::with_capacity(lead + n + tail),
+            growth: Vec::new(),
             plane: Plane::new(corridor, lead)?,
         };
         for k in 0..lead + n + tail {
@@ -120,6 +140,11 @@ impl Road {
             road.slack.push(if inside { slack[inner] } else { 0.0 });
             road.jumps.push(if inside { jumps[inner] } else { 0.0 });
             road.widths.push([corridor.left_m[inner], corridor.right_m[inner]]);
+        }
+        let mut sums = [0.0; 2];
+        for k in 0..road.len() {
+            road.growth.push(sums);
+            sums = [0, 1].map(|side| sums[side] + road.growth_at(side, k));
         }
         Ok(road)
     }
@@ -168,7 +193,7 @@ impl Road {
             [0, 1].map(|i| from[i] + by * (next.c[i] - end.c[i]) + bend * aside[i])
         };
         let direction = met(t, rate, bending);
-        let length = direction[0].hypot(direction[1]).max(0.1);
+        let length = length(direction).max(0.1);
         (met(c, moved, bent), direction.map(|part| part / length))
     }
 
@@ -219,10 +244,49 @@ impl Road {
         let end = up(to + reach).min(self.len() - 1);
         let mut growth = 0.0;
         for k in first.max(1)..end {
-            let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
-            growth += (a - 2.0 * b + c).max(0.0);
+            growth += self.growth_at(side, k);
         }
         0.25 * growth * (to - from)
+    }
+
+    /// By how much the slope of the half-width grows at a station, metres a station.
+    fn growth_at(&self, side: usize, k: usize) -> f64 {
+        let [a, b, c] = self.widths_about(side, k);
+        (a - 2.0 * b + c).max(0.0)
+    }
+
+    /// The half-widths at a station and at its neighbours. Beyond both ends they do not change.
+    pub(crate) fn widths_about(&self, side: usize, k: usize) -> [f64; 3] {
+        let last = self.len() - 1;
+        [k.saturating_sub(1), k, k + 1].map(|k| self.widths[k.min(last)][side])
+    }
+
+    /// The road from station `first` to station `last`, with half-widths on a side. `None` beyond its ends.
+    pub(crate) fn section(&self, side: usize, first: usize, last: usize) -> Option<Section> {
+        let mut section = Section { bent: [0.0; 2], rate: 0.0, slack: 0.0, jump: 0.0, jumps: 0.0, growth: 0.0 };
+        for ([a, b], (slack, jump)) in self
+            .bends
+            .get(first..last)?
+            .iter()
+            .zip(self.slack.get(first..last)?.iter().zip(self.jumps.get(first..last)?))
+        {
+            section.bent = [section.bent[0].max(*a).max(*b), section.bent[1].max(-a).max(-b)];
+            section.rate = section.rate.max((b - a).abs());
+            section.slack = section.slack.max(*slack);
+            section.jump = section.jump.max(*jump);
+            section.jumps += jump;
+        }
+        section.rate /= self.spacing;
+        // The sums are rounded.
+        section.growth = self.growth.get(last)?[side] - self.growth[first][side] + 1e-9;
+        Some(section)
+    }
+
+    /// How far a straight line of `length` metres may be off a curve that bends at the stations between `from` and `to`
+    /// (stations), beyond what curvatures say.
+    pub(crate) fn askew(&self, from: f64, to: f64, length: f64) -> f64 {
+        let (first, last) = (self.split(from).0, self.split(to).0);
+        0.25 * length * self.jumps[first..=last].iter().sum::<f64>()
     }
 
     /// How far half-widths at the given stations lie at most below the straight line between their neighbours.
@@ -307,6 +371,7 @@ fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
         widths: Vec::new(),
         slack: vec![0.0],
         jumps: vec![0.0],
+        growth: Vec::new(),
         plane: Plane::default(),
     };
     let at = stretch.place(1.0).c;

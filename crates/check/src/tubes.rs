@@ -92,6 +92,11 @@ pub(crate) struct Tubes {
     exact: Vec<Option<[f64; 2]>>,
     /// The adjoint is used if a heading bound exceeds this, radians.
     loose_rad: f64,
+    /// Whether any tube comes from the adjoint.
+    lidded: bool,
+    /// ‖y‖, ‖α‖, ‖e‖ of each unit on the straight, and its coefficients in the step that is added.
+    gains: Vec<[f64; 3]>,
+    bends: Vec<Bend>,
 }
 
 impl Tubes {
@@ -109,7 +114,20 @@ impl Tubes {
             settled,
             exact: vec![None; units],
             loose_rad: LOOSE_RAD,
+            lidded: false,
+            gains: straight(chain, tolerance_m),
+            bends: Vec::new(),
         }
+    }
+
+    /// Whether no tube comes from the adjoint.
+    pub(crate) fn is_filtered(&self) -> bool {
+        !self.lidded
+    }
+
+    /// Forbids the adjoint, or allows it again.
+    pub(crate) fn filter_alone(&mut self, alone: bool) {
+        self.loose_rad = if alone { f64::INFINITY } else { LOOSE_RAD };
     }
 
     /// Tubes by the filter alone.
@@ -131,7 +149,24 @@ impl Tubes {
             before.iter().zip(&settled).map(|(tube, settled)| tube.map_or(*settled, |tube| tube.extra)).collect()
         });
         let exact = vec![None; wider.units];
-        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, settled, exact, ..*wider }
+        Self {
+            first,
+            tolerance_m,
+            tubes: Vec::new(),
+            coefficients: Vec::new(),
+            ends,
+            settled,
+            exact,
+            gains: straight(chain, tolerance_m),
+            bends: Vec::new(),
+            ..*wider
+        }
+    }
+
+    /// Makes room for so many more steps.
+    pub(crate) fn reserve(&mut self, steps: usize) {
+        self.tubes.reserve_exact(steps * self.units);
+        self.coefficients.reserve_exact(steps * self.units);
     }
 
     /// Adds the next step. If neither the recursion nor the adjoint closes, nothing is bounded in the step, and the
@@ -140,22 +175,17 @@ impl Tubes {
         let step = self.first + self.tubes.len() / self.units;
         let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
         let first = self.tubes.len();
-        let bends: Vec<Bend> =
-            (0..self.units).map(|i| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m)).collect();
-        self.coefficients.extend(chain.links.iter().zip(&bends).map(|(link, bend)| Coefficients::of(link, bend)));
+        self.bends.clear();
+        self.bends.extend((0..self.units).map(|i| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m)));
+        self.coefficients
+            .extend(chain.links.iter().zip(&self.bends).map(|(link, bend)| Coefficients::of(link, bend, self.step_m)));
         for (i, link) in chain.links.iter().enumerate() {
             let swing = motion.swing(step, i);
-            let bend = bends[i];
-            let gains = &chain.gains.units[i];
             let unit = Unit {
                 link,
-                bend,
+                bend: self.bends[i],
                 curvature: swing.curvature,
-                gains: [
-                    gains.point(0.0, self.tolerance_m),
-                    gains.heading.at(self.tolerance_m),
-                    gains.coupling.at(self.tolerance_m),
-                ],
+                gains: self.gains[i],
                 step_m: self.step_m,
                 extra: self.ends[i],
             };
@@ -170,6 +200,7 @@ impl Tubes {
                 self.exact[i] = None;
                 plain
             } else {
+                self.lidded = true;
                 self.lid(chain, &unit, (step, i), &passed, coupling)
                     .and_then(|lid| unit.settle(&passed, before, lid))
                     .or(plain)
@@ -187,7 +218,7 @@ impl Tubes {
             self.tubes.push(Some(tube));
             if let Some(next) = chain.links.get(i + 1) {
                 let swing = motion.swing(step, i + 1);
-                passed = unit.pass_on(&passed, &tube, next, &bends[i + 1], swing);
+                passed = unit.pass_on(&passed, &tube, next, &self.bends[i + 1], swing);
             }
         }
     }
@@ -394,17 +425,30 @@ impl Unit<'_> {
     }
 }
 
+/// ‖y‖, ‖α‖, ‖e‖ of each unit on the straight.
+fn straight(chain: &Chain, tolerance_m: f64) -> Vec<[f64; 3]> {
+    let units = chain.gains.units.iter();
+    units
+        .map(|unit| [unit.point(0.0, tolerance_m), unit.heading.at(tolerance_m), unit.coupling.at(tolerance_m)])
+        .collect()
+}
+
 /// What the second order adds to the straight bound of each axle on a straight of any length (proof, section 8). It is
 /// a bound from which the recursion returns no more, over a step in which everything earlier has faded. Infinite if
 /// there is none.
 fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     let mut settled = vec![f64::INFINITY; chain.links.len()];
     let mut passed = Passed::steer_axle(tolerance_m, 0.0);
+    let gains = straight(chain, tolerance_m);
     for (i, link) in chain.links.iter().enumerate() {
-        let gains = &chain.gains.units[i];
-        let gains = [gains.point(0.0, tolerance_m), gains.heading.at(tolerance_m), gains.coupling.at(tolerance_m)];
-        let unit =
-            Unit { link, bend: Bend::STRAIGHT, curvature: 0.0, gains, step_m: FADED_LENGTHS * link.l, extra: 0.0 };
+        let unit = Unit {
+            link,
+            bend: Bend::STRAIGHT,
+            curvature: 0.0,
+            gains: gains[i],
+            step_m: FADED_LENGTHS * link.l,
+            extra: 0.0,
+        };
         let Some((tube, end)) = unit.settle(&passed, None, Lid::NONE) else { break };
         settled[i] = end;
         if let Some(next) = chain.links.get(i + 1) {

@@ -1,0 +1,229 @@
+//! Coarse bounds of leeway, for the many places that lie far above their claim (proof, section 7).
+//!
+//! A body point is read in the frame of the station next to its foot: two products instead of the foot itself. What
+//! the curve, the half-width and the tube may do between the station and the foot is deducted. What a coarse bound does
+//! not decide is cut into the cells of `leeway`.
+
+use std::ops::Range;
+
+use crate::UP;
+use crate::leeway::{BETWEEN, Swept, point};
+use crate::tubes::Tube;
+
+/// A foot is at most this share of a stretch from its station.
+const NEAR: f64 = 0.6;
+/// Most moves from one station to the next in search of a foot.
+const MOST_MOVES: usize = 4;
+/// The sine of the angle between body and road, and the product of curvature and lateral place, up to which the bounds
+/// hold.
+const MOST: f64 = 0.5;
+/// Largest heading difference at a station, radians.
+const MOST_JUMP_RAD: f64 = 0.05;
+
+/// One side of a part of a body, during some steps.
+#[derive(Debug, Clone)]
+pub(crate) struct Slab {
+    pub(crate) unit: usize,
+    pub(crate) side: usize,
+    pub(crate) steps: Range<usize>,
+    /// Metres ahead of the axle, rear end first.
+    pub(crate) a: [f64; 2],
+    /// How often the body was halved.
+    pub(crate) halvings: u32,
+}
+
+/// A body point in the frame of a station.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    /// Station of the road.
+    pub(crate) station: usize,
+    /// Metres ahead of the station, and to its left.
+    off: f64,
+    lateral: f64,
+    /// Sine of the body's heading against the station's.
+    sin: f64,
+    /// Metres ahead of the axle, and the largest deviation on a straight.
+    a: f64,
+    gain: f64,
+}
+
+impl Spot {
+    /// The foot in stations of the road, roughly.
+    pub(crate) fn rough(&self, spacing: f64) -> f64 {
+        self.station as f64 + self.off / spacing
+    }
+}
+
+/// A lower bound of a slab's leeway.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coarse {
+    pub(crate) bound: f64,
+    /// The part of the deductions that halving the body divides by four.
+    pub(crate) body: f64,
+    /// The stations between which all feet lie.
+    pub(crate) stations: [f64; 2],
+}
+
+impl Swept<'_> {
+    /// A body point near station `from`. `None` if its foot is not found within a few stations, or belongs to another
+    /// leg of the road.
+    pub(crate) fn spot(&self, node: usize, unit: usize, side: usize, a: f64, from: Option<usize>) -> Option<Spot> {
+        let link = &self.chain.links[unit];
+        let pose = self.motion.pose(node, unit);
+        let x = point(pose, a, if side == 0 { link.half_width } else { -link.half_width });
+        let straight = self.rough_foot(node, unit, a);
+        let (spacing, end) = (self.road.spacing, self.road.len() - 1);
+        let mut station = from.unwrap_or(straight.max(0.0) as usize).min(end);
+        for _ in 0..MOST_MOVES {
+            let place = self.road.stations[station];
+            let r = [x[0] - place.c[0], x[1] - place.c[1]];
+            let off = r[0] * place.t[0] + r[1] * place.t[1];
+            // Beyond both ends the road is straight.
+            let beyond = station == 0 && off < 0.0 || station == end && off > 0.0;
+            if beyond || off.abs() <= NEAR * spacing {
+                let lateral = r[1] * place.t[0] - r[0] * place.t[1];
+                let sin = pose.u[1] * place.t[0] - pose.u[0] * place.t[1];
+                let gain = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m);
+                let spot = Spot { station, off, lateral, sin, a, gain };
+                return (!self.astray(spot.rough(spacing), straight)).then_some(spot);
+            }
+            station = station.saturating_add_signed((off / spacing).round() as isize).min(end);
+        }
+        None
+    }
+
+    /// Whether a foot is before the corridor, where the road is straight. No claim reaches so far.
+    pub(crate) fn outside(&self, spot: &Spot) -> bool {
+        spot.rough(self.road.spacing) + 1.5 < self.road.lead as f64
+    }
+
+    /// A lower bound of the leeway in a slab, from its corners. `spots` are those at its start and at its end in time,
+    /// rear first. `None` where the road bends too much for it.
+    pub(crate) fn coarse(&self, slab: &Slab, spots: &[[Spot; 2]; 2]) -> Option<Coarse> {
+        let all = spots.as_flattened();
+        let most = |size: fn(&Spot) -> f64| all.iter().map(size).fold(0.0, f64::max);
+        let first = all.iter().fold(usize::MAX, |least, spot| least.min(spot.station)).checked_sub(1)?;
+        let last = all.iter().fold(0, |most, spot| most.max(spot.station)) + 1;
+        let road = self.road.section(slab.side, first, last)?;
+        let tube = self.greatest_tube(slab)?;
+        let (spacing, link) = (self.road.spacing, &self.chain.links[slab.unit]);
+        let front = all[0].a.abs().max(all[1].a.abs());
+        let pace = self.pace(slab)?;
+        let bent = road.bent[0].max(road.bent[1]);
+        let off = most(|spot| spot.off.abs());
+        // Within the slab a point is at most half of the way from a corner's time.
+        let reach = front + link.half_width;
+        let turned = 0.5 * pace.travel * (pace.w + 2.0 * bent * (1.0 + reach * pace.w));
+        let sin = most(|spot| spot.sin.abs()) + 2.0 * bent * off + road.jump + turned;
+        let drift = 0.5 * pace.travel * (sin + reach * pace.w);
+        // From the station to the foot the lateral place changes by at most off²·κ/2/(1 − κ·lateral). That is below off²·κ
+        // while κ·lateral is below a half.
+        let lateral = most(|spot| spot.lateral.abs()) + off * off * bent + drift;
+        let narrow = 1.0 - bent * lateral - (bent * spacing) * (bent * spacing);
+        if !(narrow > 1.0 - MOST && sin < MOST && road.jump < MOST_JUMP_RAD) {
+            return None;
+        }
+        let slide = link.half_width * tube.a + sin * (tube.y + front * tube.a);
+        // Metres along the road by which a foot may be from where its spot puts it.
+        let stray = off * (1.0 / narrow - 1.0) + slide / narrow;
+        if off / narrow + slide / narrow > spacing {
+            return None;
+        }
+        let tan = sin / (1.0 - sin * sin).sqrt();
+        let heading = self.chain.gains.units[slab.unit].heading.at(self.tubes.tolerance_m);
+        // How much the first-order bound grows per metre of body.
+        let rise = (heading + (tube.extra + tube.extra_coupling) / link.l) * 1.001;
+        let shared = front * tube.r1 / link.l
+            + 0.5 * sin * front * tube.a * tube.a
+            + 0.5 * bent / narrow * slide * slide
+            + link.half_width * tan * rise;
+        let sign = if slab.side == 0 { 1.0 } else { -1.0 };
+        let (mut least, mut steepest) = (f64::INFINITY, 0.0_f64);
+        for spot in all {
+            let share = (spot.a / link.l).abs();
+            let dev = spot.gain + (1.0 - spot.a / link.l).abs() * tube.extra + share * tube.extra_coupling;
+            let [w0, w1, w2] = self.road.widths_about(slab.side, spot.station);
+            let (before, after) = ((w1 - w0) / spacing, (w2 - w1) / spacing);
+            let slope = before.abs().max(after.abs());
+            steepest = steepest.max(slope);
+            let behind = spot.off < 0.0;
+            let width = w1 + spot.off * if behind { before } else { after } - slope * stray;
+            let aside = 0.5 * spot.off * spot.off * bent / narrow;
+            // Behind its station a foot lies on the stretch before, which may meet the station askew.
+            let askew = if behind { road.slack + road.jump * (off + road.jump * (lateral + 1.0)) } else { 0.0 };
+            least = least.min(width - sign * spot.lateral - (aside + road.slack + askew + (dev + shared) * UP));
+        }
+        let feet = all.iter().map(|spot| spot.rough(spacing));
+        let [from, to] = feet.fold([f64::INFINITY, 0.0], |[from, to], s| [s.min(from), s.max(to)]);
+        let [from, to] = [from - stray / spacing, to + stray / spacing];
+        // Along the body, as `allowances` of exact corners.
+        let length = all[1].a - all[0].a;
+        let crowded = narrow * narrow;
+        let curve = road.bent[slab.side] / narrow
+            + steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
+            + tube.a * link.half_width * (2.0 * bent * bent * (sin + 0.05) + road.rate);
+        let body = curve * BETWEEN * length * length / 8.0 + 0.25 * (road.growth * (to - from) + road.jumps * length);
+        // In time, as `corner` and `allowances`: |second derivative| per square metre of the coupling's path, and where
+        // chords meet, the jumps of the first derivative and of the place.
+        let (w, dw, b) = (pace.w, pace.w / link.l, link.half_width);
+        let along_road = 1.0 + reach * w;
+        let across = (w * w * (link.l + front) + b * dw) * sin + w + front * dw + b * w * w;
+        let foot = (w * (1.0 + front * w) + 2.0 * bent * (sin + front * w) + road.rate * lateral) / crowded;
+        let bend = across + bent * along_road * along_road / narrow + steepest * foot;
+        let kink = pace.kinks * (link.l * w + reach / link.l) * (1.0 + steepest / narrow);
+        let time = (bend * BETWEEN + 1e-5) * pace.travel * pace.travel / 8.0
+            + 0.25 * pace.travel * (kink + road.jumps)
+            + pace.kinks * pace.led * (reach + link.l);
+        Some(Coarse { bound: least - body - time, body, stations: [from - 0.01, to + 0.01] })
+    }
+
+    /// The greatest bounds in a slab's steps. The bulge of the coupling's path counts as a part of `extra_coupling`.
+    fn greatest_tube(&self, slab: &Slab) -> Option<Tube> {
+        let mut most = Tube::default();
+        for step in slab.steps.clone() {
+            let tube = self.tubes.get(step, slab.unit)?;
+            let bulge = if slab.unit == 0 { 0.0 } else { self.motion.swing(step, slab.unit).bulge };
+            most.extra = most.extra.max(tube.extra);
+            most.extra_coupling = most.extra_coupling.max(tube.extra_coupling + bulge);
+            most.y = most.y.max(tube.y);
+            most.a = most.a.max(tube.a);
+            most.r1 = most.r1.max(tube.r1);
+        }
+        Some(most)
+    }
+
+    /// How a unit moves in a slab's steps. `None` where it stands too far askew to its coupling's path.
+    fn pace(&self, slab: &Slab) -> Option<Pace> {
+        let (link, first) = (&self.chain.links[slab.unit], slab.steps.start);
+        let (mut half, mut longest) = (0.0_f64, 0.0_f64);
+        let mut pace = Pace { travel: 0.0, w: 0.0, kinks: 0.0, led: 0.0 };
+        for step in slab.steps.clone() {
+            let swing = self.motion.swing(step, slab.unit);
+            pace.travel += swing.len;
+            half = half.max(swing.before.abs());
+            longest = longest.max(swing.len);
+            if step > first {
+                pace.kinks += 1.05 * swing.curvature * swing.len;
+            }
+        }
+        let share = longest / link.l;
+        pace.w = 2.0 * half / (1.0 + half * half) / link.l;
+        pace.led = share * share / 12.0;
+        (half < 0.5 * MOST && pace.kinks < MOST).then_some(pace)
+    }
+}
+
+/// How a unit moves in some steps.
+struct Pace {
+    /// The way of its coupling, metres.
+    travel: f64,
+    /// Its greatest turn per metre of that way, 1/m.
+    w: f64,
+    /// Sum of the angles at which the chords of the coupling meet, radians.
+    kinks: f64,
+    /// The unit's turn at such an angle, as a share of the angle.
+    led: f64,
+}
+
+#[cfg(test)]
+mod tests;

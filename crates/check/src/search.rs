@@ -1,0 +1,205 @@
+//! The search for places where the leeway is below its claim. Coarse bounds decide most of them, and cells the rest.
+
+use std::ops::Range;
+
+use crate::coarse::{Slab, Spot};
+use crate::leeway::{CLOSE_M, Cell, Hint, Swept};
+use crate::motion::STEPS;
+
+/// Most halvings of a body for coarse bounds.
+const COARSE_HALVINGS: u32 = 4;
+
+/// Claimed leeway on each stretch between stations of the corridor, by side (0 left, 1 right), metres. −∞ claims
+/// nothing.
+#[derive(Debug, Clone)]
+pub(crate) struct Targets(pub(crate) [Vec<f64>; 2]);
+
+/// A cell whose bound is below the claim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shortfall {
+    /// Station of the corridor, as a real number.
+    pub(crate) station: f64,
+    /// Unit.
+    pub(crate) unit: usize,
+    /// Side (0 left, 1 right).
+    pub(crate) side: usize,
+    /// Body point, metres ahead of the axle.
+    pub(crate) point_m: f64,
+    /// How far the bound is below the claim, metres.
+    pub(crate) short_m: f64,
+}
+
+impl Swept<'_> {
+    /// All places where the bound is below the claim: the worst one of each stretch and side. In areas half-widths mean
+    /// nothing, so their steps are left out.
+    pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
+        let found = self.search(targets, 0..self.chain.links.len(), false);
+        found.worst.into_iter().flatten().flatten().collect()
+    }
+
+    /// Whether the bound of one unit is below the claim anywhere.
+    pub(crate) fn lacks(&mut self, targets: &Targets, unit: usize) -> bool {
+        self.search(targets, unit..unit + 1, true).any
+    }
+
+    /// Decides the cells of some units, in all steps or until one is below its claim.
+    fn search(&mut self, targets: &Targets, units: Range<usize>, any: bool) -> Shortfalls {
+        let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
+        let stretches = targets.0[0].len();
+        let mut found = Shortfalls::new(stretches);
+        let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
+            return found;
+        };
+        // The spots of all sides' ends when a slab begins.
+        let mut spots = vec![[None; 2]; self.chain.links.len() * 2];
+        let all = self.steps(first..last + 1);
+        for start in all.clone().step_by(STEPS) {
+            let steps = start..(start + STEPS).min(all.end);
+            if steps.clone().any(|step| self.road.plane.decides(step)) {
+                // In areas feet move on unseen.
+                spots.fill([None; 2]);
+                for step in steps.filter(|&step| !self.road.plane.decides(step)) {
+                    for (unit, side) in units.clone().flat_map(|unit| [(unit, 0), (unit, 1)]) {
+                        self.cell(&self.whole(unit, side, step), [Hint::NONE; 2], targets, &mut found);
+                    }
+                }
+                continue;
+            }
+            for (unit, side) in units.clone().flat_map(|unit| [(unit, 0), (unit, 1)]) {
+                let Cell { a, .. } = self.whole(unit, side, start);
+                let before: [Option<Spot>; 2] = spots[unit * 2 + side];
+                let before = [0, 1].map(|k| before[k].or_else(|| self.spot(start, unit, side, a[k], None)));
+                let after = [0, 1].map(|k| self.spot(steps.end, unit, side, a[k], before[k].map(|spot| spot.station)));
+                spots[unit * 2 + side] = after;
+                let slab = Slab { unit, side, steps: steps.clone(), a, halvings: 0 };
+                self.decide(&slab, [before, after], targets, &mut found);
+            }
+            if any && found.any {
+                break;
+            }
+        }
+        found
+    }
+
+    /// A side of a unit during a step.
+    fn whole(&self, unit: usize, side: usize, step: usize) -> Cell {
+        let link = &self.chain.links[unit];
+        Cell { unit, side, step, t: [0.0, 1.0], a: [link.rear, link.front], halvings: 0 }
+    }
+
+    /// Decides a slab by its coarse bound, or those of its parts. What remains is decided by cells.
+    fn decide(&mut self, slab: &Slab, spots: [[Option<Spot>; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
+        let mut known = None;
+        if let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = spots {
+            let corners = [[c00, c01], [c10, c11]];
+            let outside = corners.as_flattened().iter().filter(|spot| self.outside(spot)).count();
+            if outside == 4 {
+                return;
+            }
+            let coarse = self.coarse(slab, &corners);
+            let mut halve = coarse.is_none() && outside > 0;
+            if let Some(coarse) = coarse {
+                let (first, last) = self.range(coarse.stations);
+                let Some(target) = found.target(targets, slab.side, first, last) else { return };
+                if coarse.bound >= target + CLOSE_M {
+                    return;
+                }
+                // A part may be on a stretch of which less is claimed.
+                let least = targets.0[slab.side][first..=last].iter().copied().fold(target, f64::min);
+                halve = coarse.bound + coarse.body >= least;
+            }
+            if halve && slab.halvings < COARSE_HALVINGS {
+                return self.halve(slab, &corners, targets, found);
+            }
+            known = Some(corners);
+        }
+        if slab.steps.len() > 1 {
+            let mut before = spots[0];
+            for step in slab.steps.clone() {
+                let from = before.map(|spot| spot.map(|spot| spot.station));
+                let after = if step + 1 == slab.steps.end {
+                    spots[1]
+                } else {
+                    [0, 1].map(|k| self.spot(step + 1, slab.unit, slab.side, slab.a[k], from[k]))
+                };
+                self.decide(&Slab { steps: step..step + 1, ..*slab }, [before, after], targets, found);
+                before = after;
+            }
+            return;
+        }
+        let hints =
+            known.map_or([Hint::NONE; 2], |[start, _]| start.map(|spot| Hint::at(spot.rough(self.road.spacing))));
+        let Slab { unit, side, a, halvings, .. } = *slab;
+        self.cell(&Cell { unit, side, step: slab.steps.start, t: [0.0, 1.0], a, halvings }, hints, targets, found);
+    }
+
+    /// Decides both halves of a slab's body.
+    fn halve(&mut self, slab: &Slab, corners: &[[Spot; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
+        let middle = f64::midpoint(slab.a[0], slab.a[1]);
+        let at = |node: usize, ends: &[Spot; 2]| {
+            let from = usize::midpoint(ends[0].station, ends[1].station);
+            self.spot(node, slab.unit, slab.side, middle, Some(from))
+        };
+        let middles = [at(slab.steps.start, &corners[0]), at(slab.steps.end, &corners[1])];
+        let half = |a: [f64; 2]| Slab { steps: slab.steps.clone(), a, halvings: slab.halvings + 1, ..*slab };
+        let rear = [0, 1].map(|t| [Some(corners[t][0]), middles[t]]);
+        let front = [0, 1].map(|t| [middles[t], Some(corners[t][1])]);
+        self.decide(&half([slab.a[0], middle]), rear, targets, found);
+        self.decide(&half([middle, slab.a[1]]), front, targets, found);
+    }
+}
+
+/// The worst shortfall of each stretch and side.
+pub(crate) struct Shortfalls {
+    worst: [Vec<Option<Shortfall>>; 2],
+    any: bool,
+}
+
+impl Shortfalls {
+    fn new(stretches: usize) -> Self {
+        Self { worst: [vec![None; stretches], vec![None; stretches]], any: false }
+    }
+
+    /// The greatest claim on stretches `first..=last` that is not refuted yet.
+    pub(crate) fn target(&self, targets: &Targets, side: usize, first: usize, last: usize) -> Option<f64> {
+        let mut most = f64::NEG_INFINITY;
+        for k in first..=last {
+            // One refutation per stretch is enough.
+            if self.worst[side][k].is_none() {
+                most = most.max(targets.0[side][k]);
+            }
+        }
+        (most > f64::NEG_INFINITY).then_some(most)
+    }
+
+    pub(crate) fn add(
+        &mut self,
+        cell: &Cell,
+        station: f64,
+        point_m: f64,
+        short_m: f64,
+        (first, last): (usize, usize),
+        targets: &Targets,
+    ) {
+        let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
+        for k in first..=last {
+            let own = short_m - (most - targets.0[cell.side][k]);
+            let slot = &mut self.worst[cell.side][k];
+            if own > 0.0 && slot.is_none_or(|worst| own > worst.short_m) {
+                self.any = true;
+                *slot = Some(Shortfall { station, unit: cell.unit, side: cell.side, point_m, short_m: own });
+            }
+        }
+    }
+
+    pub(crate) fn unbounded(&mut self, cell: &Cell, stretches: &[usize], targets: &Targets) {
+        for &k in stretches {
+            if targets.0[cell.side][k] > f64::NEG_INFINITY {
+                let short_m = f64::INFINITY;
+                self.any = true;
+                self.worst[cell.side][k] =
+                    Some(Shortfall { station: k as f64, unit: cell.unit, side: cell.side, point_m: 0.0, short_m });
+            }
+        }
+    }
+}
