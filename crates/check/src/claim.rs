@@ -16,8 +16,9 @@ pub const TOLERANCE_M: f64 = 1e-3;
 /// The tolerance of hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
-/// A leeway below minus this means that nothing is bounded.
-const NOTHING_M: f64 = 50.0;
+/// A body that lacks this much room folds up, or leaves the road for another leg of it, metres. The two programs follow it for different
+/// ways, so its limiting place is not checked.
+const ASTRAY_M: f64 = 3.0;
 
 /// The claimed limiting place may have this much more room than the RSC, metres. The two programs deduct different
 /// amounts for what lies between their steps.
@@ -213,7 +214,7 @@ impl<'a> Subject<'a> {
 
     /// Checks the limiting place: it must be on the span and have hardly more room than the RSC.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
-        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
+        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -ASTRAY_M)?);
         // How far a body is outside of an area is not measured here (`plane`). Far inside, the prover measures roughly. Between γ = 1 and
         // γ_min it takes chords, which may lie far below the room at that γ.
         let measured = (0.0..ROOMY_M).contains(&rsc_m) && claim.shrink >= 1.0;
