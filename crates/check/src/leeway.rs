@@ -603,7 +603,7 @@ impl Swept<'_> {
         if margin >= least {
             return margin;
         }
-        self.tighten(step);
+        self.tighten_up_to(step);
         self.plain_hinge_margin(step, unit)
     }
 
