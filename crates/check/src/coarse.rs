@@ -138,14 +138,13 @@ impl Swept<'_> {
             + 0.5 * bent / narrow * slide * slide
             + link.half_width * tan * rise;
         let sign = if slab.side == 0 { 1.0 } else { -1.0 };
-        let (mut least, mut steepest) = (f64::INFINITY, 0.0_f64);
+        let mut least = f64::INFINITY;
         for spot in all {
             let share = (spot.a / link.l).abs();
             let dev = spot.gain + (1.0 - spot.a / link.l).abs() * tube.extra + share * tube.extra_coupling;
             let [w0, w1, w2] = self.road.widths_about(slab.side, spot.station);
             let (before, after) = ((w1 - w0) / spacing, (w2 - w1) / spacing);
             let slope = before.abs().max(after.abs());
-            steepest = steepest.max(slope);
             let behind = spot.off < 0.0;
             let width = w1 + spot.off * if behind { before } else { after } - slope * stray;
             let aside = 0.5 * spot.off * spot.off * bent / narrow;
@@ -160,7 +159,7 @@ impl Swept<'_> {
         let length = all[1].a - all[0].a;
         let crowded = narrow * narrow;
         let curve = road.bent[slab.side] / narrow
-            + steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
+            + road.steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
             + tube.a * link.half_width * (2.0 * bent * bent * (sin + 0.05) + road.rate);
         let body = curve * BETWEEN * length * length / 8.0 + 0.25 * (road.growth * (to - from) + road.jumps * length);
         // In time, as `corner` and `allowances`: |second derivative| per square metre of the coupling's path, and where
@@ -169,8 +168,8 @@ impl Swept<'_> {
         let along_road = 1.0 + reach * w;
         let across = (w * w * (link.l + front) + b * dw) * sin + w + front * dw + b * w * w;
         let foot = (w * (1.0 + front * w) + 2.0 * bent * (sin + front * w) + road.rate * lateral) / crowded;
-        let bend = across + bent * along_road * along_road / narrow + steepest * foot;
-        let kink = pace.kinks * (link.l * w + reach / link.l) * (1.0 + steepest / narrow);
+        let bend = across + bent * along_road * along_road / narrow + road.steepest * foot;
+        let kink = pace.kinks * (link.l * w + reach / link.l) * (1.0 + road.steepest / narrow);
         let time = (bend * BETWEEN + 1e-5) * pace.travel * pace.travel / 8.0
             + 0.25 * pace.travel * (kink + road.jumps)
             + pace.kinks * pace.led * (reach + link.l);

@@ -424,7 +424,7 @@ impl<'a> Swept<'a> {
         let (sharp, rate) = self.road.sharpest(cell.side, range[0], range[1]);
         let inside = (1.0 - sharp * lateral).max(0.1);
         let sin = all.iter().map(|c| c.sin.abs()).fold(0.0, f64::max);
-        let slope = all.iter().map(|c| c.slope.abs()).fold(0.0, f64::max);
+        let slope = self.road.steepest(cell.side, range[0], range[1]);
         let tube = self.tubes.get(cell.step, cell.unit).map_or(0.0, |tube| tube.a);
         let turn = 2.0 * sharp * sharp * (sin + 0.05) + rate;
         let curve = sharp / inside

@@ -55,7 +55,9 @@ pub(crate) struct Section {
     pub(crate) jump: f64,
     /// Sum of these heading differences.
     pub(crate) jumps: f64,
-    /// Sum by which the slope of the half-width grows, metres a station.
+    /// Greatest slope of the half-width.
+    pub(crate) steepest: f64,
+    /// Sum by which that slope grows, metres a station.
     pub(crate) growth: f64,
 }
 
@@ -263,7 +265,8 @@ impl Road {
 
     /// The road from station `first` to station `last`, with half-widths on a side. `None` beyond its ends.
     pub(crate) fn section(&self, side: usize, first: usize, last: usize) -> Option<Section> {
-        let mut section = Section { bent: [0.0; 2], rate: 0.0, slack: 0.0, jump: 0.0, jumps: 0.0, growth: 0.0 };
+        let mut section =
+            Section { bent: [0.0; 2], rate: 0.0, slack: 0.0, jump: 0.0, jumps: 0.0, steepest: 0.0, growth: 0.0 };
         for ([a, b], (slack, jump)) in self
             .bends
             .get(first..last)?
@@ -271,12 +274,15 @@ impl Road {
             .zip(self.slack.get(first..last)?.iter().zip(self.jumps.get(first..last)?))
         {
             section.bent = [section.bent[0].max(*a).max(*b), section.bent[1].max(-a).max(-b)];
-            section.rate = section.rate.max((b - a).abs());
             section.slack = section.slack.max(*slack);
             section.jump = section.jump.max(*jump);
             section.jumps += jump;
         }
-        section.rate /= self.spacing;
+        for pair in self.widths.get(first..=last)?.windows(2) {
+            section.steepest = section.steepest.max((pair[1][side] - pair[0][side]).abs());
+        }
+        section.rate = most_change(&self.bends[first..last]) / self.spacing;
+        section.steepest /= self.spacing;
         // The sums are rounded.
         section.growth = self.growth.get(last)?[side] - self.growth[first][side] + 1e-9;
         Some(section)
@@ -305,16 +311,31 @@ impl Road {
         stretches.start == 0 && bent(0, 0) || stretches.end == last && last > 0 && bent(last - 1, 1)
     }
 
+    /// The greatest slope of the half-width on the stretches between `from` and `to` (stations).
+    pub(crate) fn steepest(&self, side: usize, from: f64, to: f64) -> f64 {
+        let (first, last) = (self.split(from).0, self.split(to).0);
+        let end = (last + 2).min(self.len());
+        let rises = self.widths[first..end].windows(2).map(|pair| (pair[1][side] - pair[0][side]).abs());
+        rises.fold(0.0, f64::max) / self.spacing
+    }
+
     /// On the stretches between `from` and `to` (stations): the greatest curvature towards a side (0 left, 1 right),
     /// and the greatest change of the curvature per metre.
     pub(crate) fn sharpest(&self, side: usize, from: f64, to: f64) -> (f64, f64) {
         let first = from.max(0.0) as usize;
         let last = (to.max(0.0) as usize).min(self.len() - 1);
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        self.bends[first.min(last)..=last].iter().fold((0.0, 0.0), |(most, rate): (f64, f64), [a, b]| {
-            (most.max(sign * a).max(sign * b), rate.max((b - a).abs() / self.spacing))
-        })
+        let bends = &self.bends[first.min(last)..=last];
+        let sharp = bends.iter().flatten().fold(0.0, |most: f64, bend| most.max(sign * bend));
+        (sharp, most_change(bends) / self.spacing)
     }
+}
+
+/// The greatest change of the curvature on some stretches or from one to the next, 1/m. A corridor may begin or end in a bend.
+fn most_change(bends: &[[f64; 2]]) -> f64 {
+    let within = bends.iter().map(|[from, to]| (to - from).abs());
+    let between = bends.windows(2).map(|pair| (pair[1][0] - pair[0][1]).abs());
+    within.chain(between).fold(0.0, f64::max)
 }
 
 /// The first station at or after `s`. The library's `ceil` is a call for old processors.
