@@ -10,15 +10,18 @@ use crate::UP;
 use crate::leeway::{BETWEEN, Swept, point};
 use crate::tubes::Tube;
 
-/// A foot is at most this share of a stretch from its station.
+/// A body point is at most this share of a stretch ahead of its station or behind it.
 const NEAR: f64 = 0.6;
 /// Most moves from one station to the next in search of a foot.
 const MOST_MOVES: usize = 4;
-/// The sine of the angle between body and road, and the product of curvature and lateral place, up to which the bounds
-/// hold.
+/// Where the bounds hold: the greatest sine of the angle between body and road, and the greatest product of curvature and
+/// lateral place.
 const MOST: f64 = 0.5;
-/// Largest heading difference at a station, radians.
+/// Greatest heading difference at a station, and greatest sum of the angles at which chords meet, radians.
 const MOST_JUMP_RAD: f64 = 0.05;
+const MOST_KINKS_RAD: f64 = 0.5;
+/// Greatest tangent of half the angle between a unit and its coupling's path.
+const MOST_HALF: f64 = 0.25;
 
 /// One side of a part of a body, during some steps.
 #[derive(Debug, Clone)]
@@ -112,21 +115,27 @@ impl Swept<'_> {
         let bent = road.bent[0].max(road.bent[1]);
         let off = most(|spot| spot.off.abs());
         // Within the slab a point is at most half of the way from a corner's time.
-        let reach = front + link.half_width;
+        let (reach, length) = (front + link.half_width, all[1].a - all[0].a);
         let turned = 0.5 * pace.travel * (pace.w + 2.0 * bent * (1.0 + reach * pace.w));
-        let sin = most(|spot| spot.sin.abs()) + 2.0 * bent * off + road.jump + turned;
+        // Within a body the angle is greater than at both ends only where the road bends to both sides.
+        let between = road.bent[0].min(road.bent[1]) * length;
+        let sin = most(|spot| spot.sin.abs()) + 2.0 * bent * off + road.jump + turned + between;
         let drift = 0.5 * pace.travel * (sin + reach * pace.w);
         // From the station to the foot the lateral place changes by at most off²·κ/2/(1 − κ·lateral). That is below off²·κ
         // while κ·lateral is below a half.
-        let lateral = most(|spot| spot.lateral.abs()) + off * off * bent + drift;
+        // Within a body it is greater by the sagitta.
+        let lateral = most(|spot| spot.lateral.abs()) + (off * off + 0.25 * length * length) * bent + drift;
+        // The square allows for the cosine between a foot and its station.
         let narrow = 1.0 - bent * lateral - (bent * spacing) * (bent * spacing);
         if !(narrow > 1.0 - MOST && sin < MOST && road.jump < MOST_JUMP_RAD) {
             return None;
         }
         let slide = link.half_width * tube.a + sin * (tube.y + front * tube.a);
+        // Behind a station that the stretch before meets askew, a foot is farther along.
+        let gap = road.jump * (lateral + 1.0) + road.slack;
         // Metres along the road by which a foot may be from where its spot puts it.
-        let stray = off * (1.0 / narrow - 1.0) + slide / narrow;
-        if off / narrow + slide / narrow > spacing {
+        let stray = (off + gap) * (1.0 / narrow - 1.0) + gap + slide / narrow;
+        if (off + gap + slide) / narrow > spacing {
             return None;
         }
         let tan = sin / (1.0 - sin * sin).sqrt();
@@ -147,21 +156,22 @@ impl Swept<'_> {
             let slope = before.abs().max(after.abs());
             let behind = spot.off < 0.0;
             let width = w1 + spot.off * if behind { before } else { after } - slope * stray;
-            let aside = 0.5 * spot.off * spot.off * bent / narrow;
+            let way = spot.off.abs() + gap;
+            let aside = 0.5 * way * way * bent / narrow;
             // Behind its station a foot lies on the stretch before, which may meet the station askew.
-            let askew = if behind { road.slack + road.jump * (off + road.jump * (lateral + 1.0)) } else { 0.0 };
+            let askew = if behind { road.slack + road.jump * way } else { 0.0 };
             least = least.min(width - sign * spot.lateral - (aside + road.slack + askew + (dev + shared) * UP));
         }
         let feet = all.iter().map(|spot| spot.rough(spacing));
         let [from, to] = feet.fold([f64::INFINITY, 0.0], |[from, to], s| [s.min(from), s.max(to)]);
         let [from, to] = [from - stray / spacing, to + stray / spacing];
         // Along the body, as `allowances` of exact corners.
-        let length = all[1].a - all[0].a;
         let crowded = narrow * narrow;
         let curve = road.bent[slab.side] / narrow
             + road.steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
             + tube.a * link.half_width * (2.0 * bent * bent * (sin + 0.05) + road.rate);
-        let body = curve * BETWEEN * length * length / 8.0 + 0.25 * (road.growth * (to - from) + road.jumps * length);
+        let unfit = road.slacks + road.jumps * (0.25 * length + road.steepest * lateral);
+        let body = curve * BETWEEN * length * length / 8.0 + 0.25 * road.growth * (to - from) + unfit;
         // In time, as `corner` and `allowances`: |second derivative| per square metre of the coupling's path, and where
         // chords meet, the jumps of the first derivative and of the place.
         let (w, dw, b) = (pace.w, pace.w / link.l, link.half_width);
@@ -172,7 +182,7 @@ impl Swept<'_> {
         let kink = pace.kinks * (link.l * w + reach / link.l) * (1.0 + road.steepest / narrow);
         let time = (bend * BETWEEN + 1e-5) * pace.travel * pace.travel / 8.0
             + 0.25 * pace.travel * (kink + road.jumps)
-            + pace.kinks * pace.led * (reach + link.l);
+            + pace.led * (reach + link.l);
         Some(Coarse { bound: least - body - time, body, stations: [from - 0.01, to + 0.01] })
     }
 
@@ -181,6 +191,10 @@ impl Swept<'_> {
         let mut most = Tube::default();
         for step in slab.steps.clone() {
             let tube = self.tubes.get(step, slab.unit)?;
+            // Without a bound, nothing below would be a number.
+            if !(tube.extra + tube.extra_coupling + tube.y + tube.a + tube.r1).is_finite() {
+                return None;
+            }
             let bulge = if slab.unit == 0 { 0.0 } else { self.motion.swing(step, slab.unit).bulge };
             most.extra = most.extra.max(tube.extra);
             most.extra_coupling = most.extra_coupling.max(tube.extra_coupling + bulge);
@@ -194,21 +208,20 @@ impl Swept<'_> {
     /// How a unit moves in a slab's steps. `None` where it stands too far askew to its coupling's path.
     fn pace(&self, slab: &Slab) -> Option<Pace> {
         let (link, first) = (&self.chain.links[slab.unit], slab.steps.start);
-        let (mut half, mut longest) = (0.0_f64, 0.0_f64);
+        let mut half = 0.0_f64;
         let mut pace = Pace { travel: 0.0, w: 0.0, kinks: 0.0, led: 0.0 };
         for step in slab.steps.clone() {
             let swing = self.motion.swing(step, slab.unit);
             pace.travel += swing.len;
             half = half.max(swing.before.abs());
-            longest = longest.max(swing.len);
+            let (kink, share) = (1.05 * swing.curvature * swing.len, swing.len / link.l);
+            pace.led += kink * share * share / 12.0;
             if step > first {
-                pace.kinks += 1.05 * swing.curvature * swing.len;
+                pace.kinks += kink;
             }
         }
-        let share = longest / link.l;
         pace.w = 2.0 * half / (1.0 + half * half) / link.l;
-        pace.led = share * share / 12.0;
-        (half < 0.5 * MOST && pace.kinks < MOST).then_some(pace)
+        (half < MOST_HALF && pace.kinks < MOST_KINKS_RAD).then_some(pace)
     }
 }
 
@@ -220,7 +233,7 @@ struct Pace {
     w: f64,
     /// Sum of the angles at which the chords of the coupling meet, radians.
     kinks: f64,
-    /// The unit's turn at such an angle, as a share of the angle.
+    /// Sum of the unit's turns at such angles, the one before the first step included, radians.
     led: f64,
 }
 

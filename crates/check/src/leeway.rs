@@ -398,6 +398,10 @@ impl<'a> Swept<'a> {
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
         let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1)) + beside_m(x, &place);
+        // A bound without end times nothing is no number.
+        if dev.is_nan() {
+            return None;
+        }
         Some(Corner { s, place, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
@@ -433,8 +437,11 @@ impl<'a> Swept<'a> {
         let length = cell.a[1] - cell.a[0];
         let reach = all.iter().map(|c| c.reach).fold(0.0, f64::max);
         let dip = self.road.dip(cell.side, range[0], range[1], reach);
-        let askew = |way: f64| self.road.askew(range[0], range[1], way);
-        (bend * travel * travel / 8.0 + askew(travel), curve * length * length / 8.0 + dip + askew(length))
+        // Where stations do not fit, the road bends and steps aside, and feet jump along it.
+        let [slacks, jumps] = self.road.errors(range[0] - 0.01, range[1] + 0.01);
+        let unfit = slacks + jumps * slope * lateral;
+        let bent = |way: f64, curve: f64| curve * way * way / 8.0 + 0.25 * jumps * way;
+        (bent(travel, bend), bent(length, curve) + dip + unfit)
     }
 
     /// Repeats the decision in intervals: the corners' nominal leeway from poses, road and widths.

@@ -53,7 +53,8 @@ pub(crate) struct Section {
     /// Greatest error bound of a curve, metres, and greatest heading difference at a station, radians.
     pub(crate) slack: f64,
     pub(crate) jump: f64,
-    /// Sum of these heading differences.
+    /// Sums of both. They add up along a body.
+    pub(crate) slacks: f64,
     pub(crate) jumps: f64,
     /// Greatest slope of the half-width.
     pub(crate) steepest: f64,
@@ -265,8 +266,16 @@ impl Road {
 
     /// The road from station `first` to station `last`, with half-widths on a side. `None` beyond its ends.
     pub(crate) fn section(&self, side: usize, first: usize, last: usize) -> Option<Section> {
-        let mut section =
-            Section { bent: [0.0; 2], rate: 0.0, slack: 0.0, jump: 0.0, jumps: 0.0, steepest: 0.0, growth: 0.0 };
+        let mut section = Section {
+            bent: [0.0; 2],
+            rate: 0.0,
+            slack: 0.0,
+            jump: 0.0,
+            slacks: 0.0,
+            jumps: 0.0,
+            steepest: 0.0,
+            growth: 0.0,
+        };
         for ([a, b], (slack, jump)) in self
             .bends
             .get(first..last)?
@@ -275,6 +284,7 @@ impl Road {
         {
             section.bent = [section.bent[0].max(*a).max(*b), section.bent[1].max(-a).max(-b)];
             section.slack = section.slack.max(*slack);
+            section.slacks += slack;
             section.jump = section.jump.max(*jump);
             section.jumps += jump;
         }
@@ -288,11 +298,10 @@ impl Road {
         Some(section)
     }
 
-    /// How far a straight line of `length` metres may be off a curve that bends at the stations between `from` and `to`
-    /// (stations), beyond what curvatures say.
-    pub(crate) fn askew(&self, from: f64, to: f64, length: f64) -> f64 {
+    /// Sums of the errors of place (metres) and heading (radians) at the stations between `from` and `to` (stations).
+    pub(crate) fn errors(&self, from: f64, to: f64) -> [f64; 2] {
         let (first, last) = (self.split(from).0, self.split(to).0);
-        0.25 * length * self.jumps[first..=last].iter().sum::<f64>()
+        [&self.slack, &self.jumps].map(|errors| errors[first..last.max(first)].iter().sum())
     }
 
     /// How far half-widths at the given stations lie at most below the straight line between their neighbours.

@@ -97,6 +97,7 @@ impl Swept<'_> {
                 return;
             }
             let coarse = self.coarse(slab, &corners);
+            // Only a part of the body may be on the corridor already.
             let mut halve = coarse.is_none() && outside > 0;
             if let Some(coarse) = coarse {
                 let (first, last) = self.range(coarse.stations);
@@ -104,7 +105,7 @@ impl Swept<'_> {
                 if coarse.bound >= target + CLOSE_M {
                     return;
                 }
-                // A part may be on a stretch of which less is claimed.
+                // A part may be on a stretch of which less is claimed, or nothing.
                 let least = targets.0[slab.side][first..=last].iter().copied().fold(target, f64::min);
                 halve = coarse.bound + coarse.body >= least;
             }
