@@ -61,7 +61,7 @@ impl Spot {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coarse {
     pub(crate) bound: f64,
-    /// The part of the deductions that halving the body divides by four.
+    /// The part of the deductions that lessens as the body is halved.
     pub(crate) body: f64,
     /// The stations between which all feet lie.
     pub(crate) stations: [f64; 2],

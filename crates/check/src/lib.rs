@@ -29,6 +29,8 @@ mod adjoint;
 mod chain;
 mod claim;
 mod coarse;
+#[cfg(test)]
+mod drawn;
 mod gains;
 mod interval;
 mod leeway;

@@ -161,7 +161,7 @@ fn led(link: &Link, h: [f64; 2], u: [f64; 2], by: f64) -> Pose {
     Pose { p: along(h, -link.l, u), u }
 }
 
-/// The length of a vector, metres. The library's `hypot` guards against numbers that roads do not have, and takes ten times as long.
+/// The length of a vector, metres. The library's `hypot` guards against numbers that roads do not have, and took 6 % of the checker's time.
 pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }

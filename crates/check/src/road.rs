@@ -245,17 +245,19 @@ impl Road {
     pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
         let first = ((from - reach).max(0.0) as usize + 1).min(self.len());
         let end = up(to + reach).min(self.len() - 1);
-        let mut growth = 0.0;
-        for k in first.max(1)..end {
-            growth += self.growth_at(side, k);
-        }
-        0.25 * growth * (to - from)
+        0.25 * self.grown(side, first, end.max(first)) * (to - from)
     }
 
     /// By how much the slope of the half-width grows at a station, metres a station.
     fn growth_at(&self, side: usize, k: usize) -> f64 {
         let [a, b, c] = self.widths_about(side, k);
         (a - 2.0 * b + c).max(0.0)
+    }
+
+    /// By how much the slope of the half-width grows at stations `first..end`, metres a station. The sums are rounded.
+    fn grown(&self, side: usize, first: usize, end: usize) -> f64 {
+        let before = |k: usize| self.growth[k.min(self.len() - 1)][side];
+        before(end) - before(first) + 1e-9
     }
 
     /// The half-widths at a station and at its neighbours. Beyond both ends they do not change.
@@ -293,8 +295,7 @@ impl Road {
         }
         section.rate = most_change(&self.bends[first..last]) / self.spacing;
         section.steepest /= self.spacing;
-        // The sums are rounded.
-        section.growth = self.growth.get(last)?[side] - self.growth[first][side] + 1e-9;
+        section.growth = self.grown(side, first, last);
         Some(section)
     }
 

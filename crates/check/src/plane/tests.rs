@@ -5,38 +5,12 @@ use std::sync::Arc;
 use super::*;
 use crate::chain::Chain;
 use crate::claim::{SpanClaim, Subject};
+use crate::drawn::{chain, random, unit};
 use netcert_base::corridor::CurvatureProfile;
-use netcert_base::vehicle::{Unit, Vehicle};
-
-fn unit(l: f64, hitch_m: f64, front_m: f64, rear_m: f64, most_deg: f64) -> Unit {
-    Unit {
-        name: String::new(),
-        coupling_to_axle_m: l,
-        hitch_offset_m: hitch_m,
-        front_overhang_m: front_m,
-        rear_overhang_m: rear_m,
-        width_m: 2.55,
-        max_articulation_rad: f64::to_radians(most_deg),
-        sway_rad: 0.003,
-    }
-}
 
 /// A tractor with a semi-trailer, 16 m long.
 fn semi() -> Chain {
-    Chain::new(&Vehicle {
-        id: "semi".to_owned(),
-        name: String::new(),
-        region: String::new(),
-        length_m: 16.0,
-        height_m: None,
-        gross_mass_t: None,
-        axle_load_t: None,
-        tracking_tolerance_m: 0.15,
-        tracking_heading_rad: 0.02,
-        min_shrink: 0.5,
-        source: String::new(),
-        units: vec![unit(3.7, -0.6, 1.4, 0.9, 45.0), unit(7.7, 0.0, 1.6, 4.0, 80.0)],
-    })
+    chain(0.15, vec![unit(3.7, -0.6, 1.4, 0.9, 45.0), unit(7.7, 0.0, 1.6, 4.0, 80.0)])
 }
 
 fn square([x, y]: Point, half: f64) -> Vec<Point> {
@@ -334,17 +308,6 @@ fn in_a_turn_the_bound_is_the_nominal_distance_less_the_deviation() {
     let counts = |s: f64, count: u32, _, _| s > 110.0 && s < 200.0 && count.is_multiple_of(10);
     let closest = (0..100_u64).map(|seed| driven(&subject, &corridor, seed, counts)).fold(f64::INFINITY, f64::min);
     assert!(closest > proved && closest < proved + 0.2, "{closest} {proved}");
-}
-
-/// Random numbers from 0 to 1.
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 /// The least room on a drive whose steer axle deviates to either side and whose axles slip, both as they happen to.
