@@ -47,32 +47,16 @@ pub(super) struct StrokeRow {
 }
 
 /// The rows of a network by their indices in it; strokes by their first edge.
-pub(super) struct Gathered {
+pub(super) struct NetworkRows {
     pub(super) roads: Sorter<u32, RoadRow>,
     pub(super) edges: Sorter<u32, EdgeRow>,
     pub(super) strokes: Sorter<u32, StrokeRow>,
-    pub(super) restrictions: Vec<PortionRestriction>,
-    pub(super) areas: Vec<Area>,
-    /// By kind and object, the order of drawing.
-    pub(super) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
 }
 
-impl Gathered {
+impl NetworkRows {
     /// No rows yet. Temporary files are made beside `path`.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
-        Ok(Self {
-            roads: sorter(path, "-roads")?,
-            edges: sorter(path, "-edges")?,
-            strokes: sorter(path, "-strokes")?,
-            restrictions: Vec::new(),
-            areas: Vec::new(),
-            backdrop: sorter(path, "-backdrop")?,
-        })
-    }
-
-    /// Adds what lies behind the roads.
-    pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
-        things.iter().try_for_each(|thing| self.backdrop.push((thing.kind, thing.object), thing))
+        Ok(Self { roads: sorter(path, "-roads")?, edges: sorter(path, "-edges")?, strokes: sorter(path, "-strokes")? })
     }
 
     /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.
@@ -89,8 +73,27 @@ impl Gathered {
                 self.strokes.push(first, &row)?;
             }
         }
-        self.restrictions.extend(portion.restrictions());
         Ok(())
+    }
+}
+
+/// What portions and the reader bring beside the network.
+pub(super) struct Gathered {
+    pub(super) restrictions: Vec<PortionRestriction>,
+    pub(super) areas: Vec<Area>,
+    /// By kind and object, the order of drawing.
+    pub(super) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
+}
+
+impl Gathered {
+    /// No rows yet. Temporary files are made beside `path`.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        Ok(Self { restrictions: Vec::new(), areas: Vec::new(), backdrop: sorter(path, "-backdrop")? })
+    }
+
+    /// Adds what lies behind the roads.
+    pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
+        things.iter().try_for_each(|thing| self.backdrop.push((thing.kind, thing.object), thing))
     }
 }
 

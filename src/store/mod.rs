@@ -16,6 +16,7 @@ mod evidence;
 mod facts;
 mod finished;
 mod gathered;
+mod growing;
 mod interrupt;
 mod junctions;
 mod kept;

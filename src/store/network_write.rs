@@ -15,7 +15,7 @@ use crate::words::{Named, highway};
 use super::blob;
 use super::bulk::{Bulk, Takes};
 use super::error::content;
-use super::gathered::{EdgeRow, RoadRow, StrokeRow};
+use super::gathered::{EdgeRow, NetworkRows, RoadRow, StrokeRow};
 use super::part::sorter;
 use crate::sorter::{Sorted, Sorter};
 
@@ -32,7 +32,7 @@ pub(super) struct Written {
 /// Writes all tables of the network except those of restrictions and areas. A temporary file is made beside `path`.
 pub(super) async fn write(
     to: &mut impl Takes,
-    (roads, edges, strokes): (Sorter<u32, RoadRow>, Sorter<u32, EdgeRow>, Sorter<u32, StrokeRow>),
+    NetworkRows { roads, edges, strokes }: NetworkRows,
     path: &Path,
 ) -> Sql<Written> {
     let mut boxes = sorter(path, "-boxes")?;

@@ -3,6 +3,7 @@
 //! Calls block the thread, so asynchronous callers must use a blocking task. Every error names the file.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use sqlx::Connection as _;
@@ -45,6 +46,15 @@ impl Session {
         &mut self,
         make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
     ) -> Result<T, StoreError> {
+        self.fill_until(&AtomicBool::new(false), make)
+    }
+
+    /// As [`Self::fill`]. Ends with an error soon after `stop` is set.
+    pub(super) fn fill_until<T>(
+        &mut self,
+        stop: &AtomicBool,
+        make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
+    ) -> Result<T, StoreError> {
         let Self { path, runtime, connection } = self;
         let makes = tokio::runtime::Builder::new_current_thread().build().map_err(|e| StoreError::io(path, e))?;
         let (send, statements) = mpsc::sync_channel::<Insert>(STATEMENTS_AHEAD);
@@ -52,6 +62,9 @@ impl Session {
             let writes = scope.spawn(move || {
                 runtime.block_on(async {
                     for insert in statements {
+                        if stop.load(Ordering::Relaxed) {
+                            return Err(sqlx::Error::WorkerCrashed);
+                        }
                         insert.execute(connection).await?;
                     }
                     Ok(())

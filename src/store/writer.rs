@@ -24,11 +24,12 @@ use super::database::Database;
 use super::error::StoreError;
 use super::evidence::{self, Register};
 use super::finished::{self, Finished};
-use super::gathered::Gathered;
+use super::gathered::{Gathered, NetworkRows};
+use super::growing::Growing;
 use super::junctions;
 use super::map_changes::{self, MapChanges};
 use super::names::{VERDICTS, corridor_no};
-use super::network_write;
+use super::network_write::Written;
 use super::packed::Packed;
 use super::part::{Part, sorter, with_suffix};
 use super::placing::{Older, has_journal, options, put_in_place};
@@ -58,12 +59,12 @@ pub struct VehicleNo(u32);
 
 /// A database under construction. If it is dropped unfinished, an older file at its path stays unchanged.
 pub struct Writer {
-    session: Session,
+    growing: Growing,
     /// The stored text of the settings, by the policy's number.
     settings: Vec<String>,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
-    network: Gathered,
+    gathered: Gathered,
     certificates: Waiting,
     turns: Option<Turns>,
     /// Nothing if there is no older database, or none with measurements that can be read.
@@ -129,11 +130,11 @@ impl Database {
         })?;
         let at = |e| StoreError::io(path, e);
         Ok(Writer {
-            session,
+            growing: Growing::Gathering(session, Box::new(NetworkRows::create(&part.path).map_err(at)?)),
             settings: by_policy,
             vehicles: Vec::new(),
             account: Vec::new(),
-            network: Gathered::create(&part.path).map_err(at)?,
+            gathered: Gathered::create(&part.path).map_err(at)?,
             certificates: Waiting::create(&part.path).map_err(at)?,
             turns: None,
             older,
@@ -191,17 +192,27 @@ impl Writer {
     /// Adds what a portion owns of the network. `measures` has one entry per edge of the portion's network, or is empty. The call may
     /// follow those of the certificates, because the measures are known only then.
     pub fn portion(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
-        self.network.add(portion, measures).map_err(|e| StoreError::io(&self.session.path, e))
+        let added = self.growing.rows().and_then(|rows| rows.add(portion, measures));
+        added.map_err(|e| StoreError::io(&self.part.path, e))?;
+        self.gathered.restrictions.extend(portion.restrictions());
+        Ok(())
+    }
+
+    /// Begins to write the network, which has all its portions, on a thread of its own. [`Writer::finish`] reports what fails there.
+    #[must_use]
+    pub fn network_complete(mut self) -> Self {
+        self.growing = Growing::Writing(self.growing.write(&self.part.path));
+        self
     }
 
     /// Adds the areas of the whole network.
     pub fn areas(&mut self, areas: Vec<Area>) {
-        self.network.areas = areas;
+        self.gathered.areas = areas;
     }
 
     /// Adds what lies behind the roads.
     pub fn backdrop(&mut self, things: &[Backdrop]) -> Result<(), StoreError> {
-        self.network.add_backdrop(things).map_err(|e| StoreError::io(&self.session.path, e))
+        self.gathered.add_backdrop(things).map_err(|e| StoreError::io(&self.part.path, e))
     }
 
     /// Adds a vehicle. Ids must be distinct.
@@ -225,14 +236,14 @@ impl Writer {
 
     pub(super) fn push(&mut self, vehicle: VehicleNo, policy: Policy, packed: Packed) -> Result<(), StoreError> {
         let waiting = self.certificates.certificate((vehicle.0, corridor_no(policy)), packed);
-        waiting.map_err(|e| StoreError::io(&self.session.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.path, e))
     }
 
     /// Adds the plan of a stroke whose plan is not the centreline, by the index of its first edge in the whole network. A stroke has at most
     /// one.
     pub fn plan(&mut self, vehicle: VehicleNo, policy: Policy, plan: &StoredPlan) -> Result<(), StoreError> {
         let waiting = self.certificates.plan((vehicle.0, corridor_no(policy)), plan);
-        waiting.map_err(|e| StoreError::io(&self.session.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.path, e))
     }
 
     /// Adds turns that a portion owns, and the areas of junctions in it. Returns the number of the first turn; the others follow it. Their
@@ -243,7 +254,7 @@ impl Writer {
         facts: &[TurnFacts],
         junctions: &[JunctionArea],
     ) -> Result<u32, StoreError> {
-        let at = |e| StoreError::io(&self.session.path, e);
+        let at = |e| StoreError::io(&self.part.path, e);
         let turns = match &mut self.turns {
             Some(turns) => turns,
             none => none.insert(Turns::create(&self.part.path).map_err(at)?),
@@ -286,7 +297,7 @@ impl Writer {
         if let Some(plan) = plan {
             waiting = waiting.and_then(|()| turns.certificates.plan(set, &plan));
         }
-        waiting.map_err(|e| StoreError::io(&self.session.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.path, e))
     }
 
     /// Adds to the account of the run.
@@ -295,16 +306,14 @@ impl Writer {
     }
 
     /// Writes what is left, checks the file, and puts it in place of the old one.
-    pub fn finish(mut self, run: &Run) -> Result<(), StoreError> {
-        let path = self.session.path.clone();
+    pub fn finish(self, run: &Run) -> Result<(), StoreError> {
+        let path = self.part.path.clone();
         let at = |e| StoreError::io(&path, e);
-        let Gathered { roads, edges, strokes, mut restrictions, areas, backdrop: things } = self.network;
+        let (mut session, Written { edges, bounds }) = self.growing.finish(&path)?;
+        let Gathered { mut restrictions, areas, backdrop: things } = self.gathered;
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
-        let scratch = &self.part.path;
-        let network = self.session.fill(async |to| network_write::write(to, (roads, edges, strokes), scratch).await)?;
-        let network_write::Written { edges, bounds } = network;
         let (vehicles, account) = (&self.vehicles, &self.account);
-        let run_id = self.session.run(async |c| {
+        let run_id = session.run(async |c| {
             sets::add_layer(c, "edge", "Directed edges of the road network", &run.finished, bounds).await?;
             styles::add(c, "edge", Shows::Edges, &run.finished).await?;
             for (number, vehicle) in (1..).zip(vehicles) {
@@ -321,11 +330,11 @@ impl Writer {
             let policy = Policy::ALL[usize::from(corridor)];
             let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings };
-            let inserted = self.session.run(async |c| set.insert(c, rows, edges).await)?;
+            let inserted = session.run(async |c| set.insert(c, rows, edges).await)?;
             inserted.map_err(|(edge, detail)| unsound(&self.vehicles, vehicle_no, edge, detail.to_owned()))?;
         }
         let (register, map_changes, of_ways) = (&self.evidence, &self.map_changes, &self.segments);
-        self.session.run(async |c| {
+        session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
@@ -341,11 +350,11 @@ impl Writer {
             sqlx::query("COMMIT").execute(c).await
         })?;
         if let Some(turns) = self.turns {
-            let finishing = FinishTurns { session: &mut self.session, path: &self.part.path, vehicles: &self.vehicles };
+            let finishing = FinishTurns { session: &mut session, path: &self.part.path, vehicles: &self.vehicles };
             finishing.run(turns, run, run_id)?;
         }
-        self.session.run(async |c| contents::add_tables(c, &run.finished).await)?;
-        put_in_place(self.session, self.part, self.older.as_ref())
+        session.run(async |c| contents::add_tables(c, &run.finished).await)?;
+        put_in_place(session, self.part, self.older.as_ref())
     }
 
     /// Puts a copy of the older database in place, in which only what differs is changed. The caller has begun a change of the older one
@@ -354,17 +363,17 @@ impl Writer {
     /// # Errors
     /// Something cannot be read or stored. The older database is then unchanged.
     pub fn amend(mut self, amendment: &mut Amendment<'_>, run: &Run) -> Result<(), StoreError> {
-        let path = self.session.path.clone();
-        self.session.close()?;
+        let path = self.part.path.clone();
+        self.growing.without_network()?.close()?;
         self.part.copy_target()?;
         let mut session = Session::open(&path, &options(&self.part))?;
-        let things = self.network.backdrop.sorted().map_err(|e| StoreError::io(&path, e))?;
+        let things = self.gathered.backdrop.sorted().map_err(|e| StoreError::io(&path, e))?;
         let things = things.map(|row| row.map(|(_, thing)| thing));
         let packed = amendment.sets.iter_mut().map(renewal::pack).collect::<Result<Vec<_>, _>>()?;
         session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
             amend::write(c, amendment, &packed).await?;
-            areas::replace(c, &self.network.areas).await?;
+            areas::replace(c, &self.gathered.areas).await?;
             backdrop::replace(c, things).await?;
             map_changes::replace(c, &self.map_changes).await?;
             records::replace_runs(c, run, &self.account).await?;

@@ -475,8 +475,39 @@ fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
         "a second run at the same time"
     );
     drop(writer);
-    assert!(std::fs::read(&path).unwrap() == before);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    let left_alone = || {
+        assert!(std::fs::read(&path).unwrap() == before);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    };
+    left_alone();
+    // The second time it is given up while another thread writes its network.
+    let mut writer = Database::create(&path, &Settings::default()).unwrap();
+    add(&mut writer, &network(20_000), &[]).unwrap();
+    drop(writer.network_complete());
+    left_alone();
+}
+
+#[test]
+fn a_network_that_is_written_beside_certificates_makes_the_same_file() {
+    let folder = folder();
+    let (a, b) = (folder.path().join("a.gpkg"), folder.path().join("b.gpkg"));
+    let network = build(&a, 300, |i, _| i);
+    let mut writer = Database::create(&b, &Settings::default()).unwrap();
+    let semi = writer.vehicle(vehicle("EU-SEMI16.5"));
+    let train = writer.vehicle(vehicle("eu_semi16_5"));
+    add(&mut writer, &network, &[]).unwrap();
+    let mut writer = writer.network_complete();
+    for i in 0..network.edges.len() as u32 {
+        for (vehicle, policy, seed) in [(semi, Policy::Lane, 1), (semi, Policy::Direction, 3), (train, Policy::Lane, 2)]
+        {
+            writer.certificate(vehicle, policy, &certificate(i, seed)).unwrap();
+        }
+    }
+    let more = add(&mut writer, &network, &[]).unwrap_err().to_string();
+    assert!(more.contains("the network is complete"), "{more}");
+    writer.account(&account());
+    writer.finish(&run()).unwrap();
+    assert!(std::fs::read(&a).unwrap() == std::fs::read(&b).unwrap());
 }
 
 #[test]
@@ -579,16 +610,19 @@ fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
     let result = std::panic::catch_unwind(|| {
         build(&path, 200, |i, _| i);
         let before = std::fs::read(&path).unwrap();
-        let error = (|| {
-            let mut writer = Database::create(&path, &Settings::default())?;
-            add(&mut writer, &network(20_000), &[])?;
-            writer.finish(&run())
-        })()
-        .unwrap_err();
-        assert!(matches!(error, StoreError::Full(_)), "{error}");
-        assert!(error.to_string().contains("a.gpkg") && error.to_string().contains("free some space"), "{error}");
-        assert!(std::fs::read(&path).unwrap() == before);
-        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+        for beside in [false, true] {
+            let error = (|| {
+                let mut writer = Database::create(&path, &Settings::default())?;
+                add(&mut writer, &network(20_000), &[])?;
+                let writer = if beside { writer.network_complete() } else { writer };
+                writer.finish(&run())
+            })()
+            .unwrap_err();
+            assert!(matches!(error, StoreError::Full(_)), "{error}");
+            assert!(error.to_string().contains("a.gpkg") && error.to_string().contains("free some space"), "{error}");
+            assert!(std::fs::read(&path).unwrap() == before);
+            assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+        }
     });
     // The dropped connection's thread may take a moment to let go of its file.
     let unmounted = (0..100).any(|_| {
