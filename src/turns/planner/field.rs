@@ -13,7 +13,19 @@ const TILE: usize = 8;
 /// Greatest distance that is told, metres.
 const FARTHEST_M: f64 = 6.0;
 
+/// Segments that are compared together.
+const LANES: usize = 8;
+
 type Segment = [[f64; 2]; 2];
+
+/// Eight segments: starts, directions, and one over the squared lengths. Coordinates are from the middle of a block, so that single
+/// precision is enough.
+#[derive(Clone)]
+struct Eight {
+    start: [[f32; LANES]; 2],
+    way: [[f32; LANES]; 2],
+    per_squared: [f32; LANES],
+}
 
 /// The distances in a square.
 pub(super) struct Field {
@@ -31,7 +43,8 @@ pub(super) struct Field {
 /// A few nodes, and the segments that may be nearest to them. Nodes that nobody has asked for are NaN.
 struct Block {
     nodes: [f32; NODES * NODES],
-    segments: Vec<Segment>,
+    middle: [f64; 2],
+    segments: Vec<Eight>,
 }
 
 impl Field {
@@ -90,10 +103,10 @@ impl Field {
         let p = [self.low[0] + i as f64 * CELL_M, self.low[1] + j as f64 * CELL_M];
         let beyond = self.row(j).iter().filter(|x| **x > p[0]).count();
         let Some(block) = &mut self.blocks[at] else { return f32::NAN };
-        let squared = block.segments.iter().map(|s| squared(*s, p)).fold(FARTHEST_M * FARTHEST_M, f64::min);
-        let distance_m = if beyond % 2 == 1 { squared.sqrt() } else { -squared.sqrt() };
-        block.nodes[node] = distance_m as f32;
-        distance_m as f32
+        let distance_m = block.distance_m(p);
+        let distance_m = if beyond % 2 == 1 { distance_m } else { -distance_m };
+        block.nodes[node] = distance_m;
+        distance_m
     }
 
     fn block(&mut self, i: usize, j: usize) -> Block {
@@ -104,8 +117,9 @@ impl Field {
         let (a, b) = (i / TILE, j / TILE);
         let tile = self.tiles[b * (self.side / TILE) + a]
             .get_or_insert_with(|| nearest(all, [centre(a, tile_m, low[0]), centre(b, tile_m, low[1])], tile_m));
-        let segments = nearest(tile, [centre(i, side_m, low[0]), centre(j, side_m, low[1])], side_m);
-        Block { nodes: [f32::NAN; NODES * NODES], segments }
+        let middle = [centre(i, side_m, low[0]), centre(j, side_m, low[1])];
+        let segments = nearest(tile, middle, side_m);
+        Block { nodes: [f32::NAN; NODES * NODES], middle, segments: Eight::all(&segments, middle) }
     }
 
     fn row(&mut self, j: usize) -> &[f64] {
@@ -116,6 +130,40 @@ impl Field {
             let at = |[a, b]: &Segment| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
             segments.iter().filter(crosses).map(at).collect()
         })
+    }
+}
+
+impl Block {
+    /// Distance of a place from the nearest segment, at most [`FARTHEST_M`].
+    fn distance_m(&self, p: [f64; 2]) -> f32 {
+        let p = [0, 1].map(|k| (p[k] - self.middle[k]) as f32);
+        let mut least = [(FARTHEST_M * FARTHEST_M) as f32; LANES];
+        for Eight { start: [x, y], way: [u, v], per_squared } in &self.segments {
+            for i in 0..LANES {
+                let (a, b) = (p[0] - x[i], p[1] - y[i]);
+                let t = ((a * u[i] + b * v[i]) * per_squared[i]).clamp(0.0, 1.0);
+                let (a, b) = (a - t * u[i], b - t * v[i]);
+                let squared = a * a + b * b;
+                least[i] = if squared < least[i] { squared } else { least[i] };
+            }
+        }
+        least.into_iter().fold(f32::INFINITY, f32::min).sqrt()
+    }
+}
+
+impl Eight {
+    /// Segments by eights, seen from a place. The last one fills what is left.
+    fn all(segments: &[Segment], from: [f64; 2]) -> Vec<Self> {
+        let of = |chunk: &[Segment]| {
+            let at = |i: usize| chunk[i.min(chunk.len() - 1)];
+            let lanes = |value: &dyn Fn(Segment) -> f64| std::array::from_fn(|i| value(at(i)) as f32);
+            Self {
+                start: [0, 1].map(|k| lanes(&|[a, _]| a[k] - from[k])),
+                way: [0, 1].map(|k| lanes(&|[a, b]| b[k] - a[k])),
+                per_squared: lanes(&|[a, b]| 1.0 / ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).max(1e-12)),
+            }
+        };
+        segments.chunks(LANES).map(of).collect()
     }
 }
 

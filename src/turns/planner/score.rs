@@ -16,6 +16,9 @@ const SIDE_STEP_M: f64 = 1.0;
 /// One in this many moments is looked at first. What they lack beyond [`SURE_M`], metres, other samples along a side hardly make up.
 const FEW: usize = 5;
 const SURE_M: f64 = 0.1;
+/// Least distance between the places looked at where a body goes on, metres, and how much more room than the least is told apart.
+const FRONT_STEP_M: f64 = 0.4;
+const SLACK_M: f64 = 0.5;
 /// Moments that refused the last paths. They are looked at first, while the vehicle is still followed: most paths lack room where the
 /// one before lacked it.
 const CRITICAL: usize = 3;
@@ -42,6 +45,8 @@ pub(super) struct Scorer<'a> {
     headings: Vec<[f64; 2]>,
     /// By moment and unit of the path at hand: axle and heading.
     stands: Vec<[[f64; 2]; 2]>,
+    /// By unit and side: where it was last, and the room there.
+    sides: Vec<Side>,
     /// The last critical moments, the newest one first.
     critical: [usize; CRITICAL],
 }
@@ -58,7 +63,16 @@ impl<'a> Scorer<'a> {
         }
         let prudent = |(i, unit): (usize, &Unit)| unit.max_articulation_rad - SPARE_RAD[usize::from(i > 0)];
         let limits = vehicle.units.iter().enumerate().map(prudent).map(|rad| (rad, rad.cos())).collect();
-        Self { made, vehicle, limits, approach, headings, stands: Vec::new(), critical: [usize::MAX; CRITICAL] }
+        Self {
+            made,
+            vehicle,
+            limits,
+            approach,
+            headings,
+            stands: Vec::new(),
+            sides: Vec::new(),
+            critical: [usize::MAX; CRITICAL],
+        }
     }
 
     /// The score of the path with a code, from moments about `step_m` apart. `None` if it is not above `floor_m`, or if the turn has no such
@@ -111,20 +125,20 @@ impl<'a> Scorer<'a> {
         let moments = self.stands.len() / count.max(1);
         // Most paths lack room for many moments on end: a few moments far apart refuse them soonest.
         let refused_m = needed_m - SURE_M;
-        let (few_m, moment) = self.room_m(field, (0..moments).rev().step_by(FEW), refused_m);
-        if few_m <= refused_m {
-            self.note(moment);
+        let few = self.room_of_few(field, (0..moments).rev().step_by(FEW), refused_m);
+        if few.0 <= refused_m {
+            self.note(few.1);
             return None;
         }
-        let (room_m, moment) = self.room_m(field, 0..moments, needed_m);
+        let (room_m, moment) = self.room_of_all(field, moments, few, needed_m);
         self.note(moment);
         let score_m = room_m - spent_m;
         (room_m > needed_m && score_m > floor_m).then_some(Score { score_m, room_m })
     }
 
-    /// Least room around the bodies at moments of the path at hand, less the tubes, and the moment that has it. The search ends where it
-    /// is no more than `needed_m`.
-    fn room_m(&self, field: &mut Field, moments: impl Iterator<Item = usize>, needed_m: f64) -> (f64, usize) {
+    /// Least room around the bodies at some moments of the path at hand, less the tubes, and the moment that has it. The search ends where
+    /// it is no more than `needed_m`.
+    fn room_of_few(&self, field: &mut Field, moments: impl Iterator<Item = usize>, needed_m: f64) -> (f64, usize) {
         let mut least = (f64::INFINITY, 0);
         for moment in moments {
             for (tube_m, axle, heading, unit) in self.at(moment) {
@@ -137,6 +151,38 @@ impl<'a> Scorer<'a> {
                 break;
             }
         }
+        least
+    }
+
+    /// As [`Self::room_of_few`] for all moments one after the other, with the least room of some of them. A body that follows itself is
+    /// looked at only where it has not been before.
+    fn room_of_all(
+        &mut self,
+        field: &mut Field,
+        moments: usize,
+        mut least: (f64, usize),
+        needed_m: f64,
+    ) -> (f64, usize) {
+        let mut sides = std::mem::take(&mut self.sides);
+        sides.clear();
+        sides.resize(2 * self.vehicle.units.len(), Side::default());
+        for moment in 0..moments {
+            let units = self.at(moment).zip(sides.chunks_exact_mut(2));
+            for ((tube_m, axle, heading, unit), sides) in units {
+                let rear = along(axle, heading, -unit.rear_overhang_m);
+                for (side, half) in sides.iter_mut().zip([0.5 * unit.width_m, -0.5 * unit.width_m]) {
+                    let corner = [rear[0] - half * heading[1], rear[1] + half * heading[0]];
+                    let room_m = side.go_on(field, (corner, heading), length_m(unit), least.0 + tube_m) - tube_m;
+                    if room_m < least.0 {
+                        least = (room_m, moment);
+                    }
+                }
+            }
+            if least.0 <= needed_m {
+                break;
+            }
+        }
+        self.sides = sides;
         least
     }
 
@@ -193,8 +239,7 @@ fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
 /// Least distance of a unit's sides from the boundary, where it is below `least_m`. Distance changes by no more than
 /// the place does, so a place with much room speaks for its neighbours.
 fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut least_m: f64) -> f64 {
-    let front = unit.coupling_to_axle_m + unit.front_overhang_m;
-    let length_m = front + unit.rear_overhang_m;
+    let length_m = length_m(unit);
     let rear = along(axle, heading, -unit.rear_overhang_m);
     for half in [0.5 * unit.width_m, -0.5 * unit.width_m] {
         let corner = [rear[0] - half * heading[1], rear[1] + half * heading[0]];
@@ -210,6 +255,57 @@ fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut
         }
     }
     least_m
+}
+
+/// A side of a body at the last moment.
+#[derive(Clone, Copy)]
+struct Side {
+    rear: [f64; 2],
+    heading: [f64; 2],
+    /// The side had at least this room, metres.
+    room_m: f64,
+}
+
+impl Default for Side {
+    /// Nothing is known.
+    fn default() -> Self {
+        Self { rear: [0.0; 2], heading: [1.0, 0.0], room_m: f64::NEG_INFINITY }
+    }
+}
+
+impl Side {
+    /// Takes the side to its next place, given by its rear end and heading. Returns its room, where it is below `least_m`.
+    fn go_on(&mut self, field: &mut Field, (rear, heading): ([f64; 2], [f64; 2]), length_m: f64, least_m: f64) -> f64 {
+        let front = along(rear, heading, length_m);
+        let from_rear = |p: [f64; 2]| {
+            let [x, y] = [p[0] - self.rear[0], p[1] - self.rear[1]];
+            let [cos, sin] = self.heading;
+            [x * cos + y * sin, y * cos - x * sin]
+        };
+        let ([behind_m, rear_aside_m], [front_m, front_aside_m]) = (from_rear(rear), from_rear(front));
+        let known_m = self.room_m - rear_aside_m.abs().max(front_aside_m.abs());
+        let on = known_m > least_m && behind_m >= 0.0;
+        // Places behind this one have been looked at, and lie no farther aside than the ends.
+        let (mut s, step_m) =
+            if on { ((length_m + length_m - front_m).min(length_m), FRONT_STEP_M) } else { (0.0, SIDE_STEP_M) };
+        let mut room_m = if on { known_m } else { least_m + SLACK_M };
+        loop {
+            let m = field.distance_m(along(rear, heading, s));
+            let beyond_m = m - room_m;
+            room_m = room_m.min(m);
+            if s >= length_m {
+                break;
+            }
+            s = (s + beyond_m.max(step_m)).min(length_m);
+        }
+        *self = Self { rear, heading, room_m };
+        room_m
+    }
+}
+
+/// Length of a unit, metres.
+fn length_m(unit: &Unit) -> f64 {
+    unit.coupling_to_axle_m + unit.front_overhang_m + unit.rear_overhang_m
 }
 
 /// The heading halfway between two.
