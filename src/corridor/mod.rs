@@ -80,9 +80,6 @@ pub struct StrokeCorridor {
     pub frame: Frame,
     /// The corridor in that frame.
     pub corridor: Corridor,
-    /// Edges of the strip at each station as the map has them, metres to the left of the centreline: `[left, right]`. The corridor is
-    /// narrower where the strip tapers to that of the next edge, and reaches beyond these edges where it moves aside.
-    pub untapered: Vec<[f64; 2]>,
     /// The edges' spans in driving order.
     pub spans: Vec<EdgeSpan>,
     /// Changes from one cross section to the next, in driving order.

@@ -49,6 +49,26 @@ impl LaidOut<'_> {
     /// It fails only if every edge of the stroke is unknown: the stroke is shorter than two metres or folded (`Geometry`), or has no
     /// width at all (`Width`). A single bad edge among good ones is `unknown` in its span.
     pub fn corridor(&self, sections: &Sections<'_>, policy: Policy) -> Result<StrokeCorridor, UnknownReason> {
+        self.make(sections, policy).map(|(made, _)| made)
+    }
+
+    /// As [`Self::corridor`], with the edges of the strip at each station as the map has them, metres to the left of the centreline:
+    /// `[left, right]`. The corridor is narrower where the strip tapers to that of the next edge, and reaches beyond these edges where it
+    /// moves aside.
+    ///
+    /// # Errors
+    /// As [`Self::corridor`].
+    pub fn corridor_and_strip(
+        &self,
+        sections: &Sections<'_>,
+        policy: Policy,
+    ) -> Result<(StrokeCorridor, Vec<[f64; 2]>), UnknownReason> {
+        let (made, untapered) = self.make(sections, policy)?;
+        let strip = untapered.edges(&made.corridor);
+        Ok((made, strip))
+    }
+
+    fn make(&self, sections: &Sections<'_>, policy: Policy) -> Result<(StrokeCorridor, Untapered), UnknownReason> {
         let params = self.params;
         let links = self.links(sections, policy);
         let (mut course, splits) = (self.course(&links), &self.network.splits);
@@ -76,9 +96,8 @@ impl LaidOut<'_> {
             station(from)..station(to) + 1
         };
         let tapers = tapers(&stretches, &jogs, &ramps, &stations);
-        let untapered = Untapered { stretches: &stretches, aside: &aside, gaps: &gaps, profile: &profile, arc: &arc };
-        let untapered = untapered.edges(&corridor);
-        Ok(StrokeCorridor { frame: self.frame, corridor, untapered, spans, tapers })
+        let untapered = Untapered { stretches, aside, gaps, profile, arc };
+        Ok((StrokeCorridor { frame: self.frame, corridor, spans, tapers }, untapered))
     }
 }
 
@@ -117,15 +136,15 @@ fn tapers(
 }
 
 /// The strips without the tapers between them.
-struct Untapered<'c> {
-    stretches: &'c [Stretch],
-    aside: &'c [Ramp],
-    gaps: &'c [Gap],
-    profile: &'c Cubics<3>,
-    arc: &'c ArcLength,
+struct Untapered {
+    stretches: Vec<Stretch>,
+    aside: Vec<Ramp>,
+    gaps: Vec<Gap>,
+    profile: Cubics<3>,
+    arc: ArcLength,
 }
 
-impl Untapered<'_> {
+impl Untapered {
     /// The edges of the strip at every station. Where two sections meet, what they have in common counts. Near a narrow place nothing
     /// outside the corridor counts.
     fn edges(&self, c: &Corridor) -> Vec<[f64; 2]> {

@@ -201,16 +201,22 @@ fn the_kerb_lane_moves_over_at_full_width_where_a_lane_is_added() {
     assert_consistent(&c);
 }
 
+fn corridor_and_strip(network: &Network, stroke: &Stroke) -> (Corridor, Vec<[f64; 2]>) {
+    let params = Params::default();
+    let laid = LaidOut::new(network, stroke, &params).unwrap();
+    let (made, strip) = laid.corridor_and_strip(&|edge| network.section(edge), Policy::Lane).unwrap();
+    (made.corridor, strip)
+}
+
 #[test]
 fn a_wide_road_before_a_narrow_one_has_its_own_width_without_the_taper() {
     let wide = section(strip((4.0, -4.0)), strip((4.0, -4.0)));
     let narrow = section(strip((2.5, -2.5)), strip((2.5, -2.5)));
     let line = |from: i32, to: i32| (from..=to).map(|i| [50.0 * f64::from(i), 0.0]).collect::<Vec<_>>();
     let (n, s) = network(&[(line(0, 4), wide), (line(4, 8), narrow)], false);
-    let made = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
-    let c = &made.corridor;
-    assert_eq!(made.untapered.len(), c.len());
-    for (k, [left, right]) in made.untapered.iter().enumerate() {
+    let (c, strip) = corridor_and_strip(&n, &s);
+    assert_eq!(strip.len(), c.len());
+    for (k, [left, right]) in strip.iter().enumerate() {
         let m = k as f64 * c.spacing_m;
         let wanted = if m < 198.0 { 4.0 } else { 2.5 };
         if !(198.0..199.0).contains(&m) {
@@ -229,8 +235,7 @@ fn a_narrow_place_is_narrow_without_the_taper_too() {
     let (mut n, s) = network(&[(line, section(wide, wide))], false);
     n.narrowings.push(Narrowing { vertex: 5, passage_m: 4.0 });
     n.edges[0].narrowings = 0..1;
-    let made = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
-    let [left, right] = made.untapered[100];
+    let [left, right] = corridor_and_strip(&n, &s).1[100];
     assert!((left - 2.0).abs() < 0.01 && (right + 2.0).abs() < 0.01, "{left} {right}");
 }
 

@@ -59,7 +59,7 @@ impl StrokeLine {
         params: &Params,
     ) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
-        let made = LaidOut::new(network, facts, params)?.corridor(sections, policy)?;
+        let (made, mapped) = LaidOut::new(network, facts, params)?.corridor_and_strip(sections, policy)?;
         let c = &made.corridor;
         let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
@@ -68,7 +68,7 @@ impl StrokeLine {
             let section = sections(edge);
             for k in span.stations.clone() {
                 // A taper to the next edge narrows and moves the corridor, not the road.
-                let strip = made.untapered[k];
+                let strip = mapped[k];
                 direction[k] = outer(own[k], wider(strip, section.strip(policy), section.direction));
                 let all = section.carriageway.or(section.direction);
                 carriageway[k] = outer(direction[k], wider(strip, section.strip(policy), all));
