@@ -37,7 +37,7 @@ const TOUCHING_M: f64 = 0.03;
 /// Largest extent of a mapped corner along its roads, metres.
 const MOST_CORNER_M: f64 = 20.0;
 /// Angle of a chord of the kerb return's arc, radians. The arc is cut off outside, on the side with less room.
-const ARC_STEP_RAD: f64 = 0.1;
+pub(super) const ARC_STEP_RAD: f64 = 0.1;
 
 /// The data from which the area is made.
 pub(super) struct Ground<'a> {
@@ -131,7 +131,8 @@ impl Ground<'_> {
 
     /// The corner between the roads' edges on the inside of the turn, rounded with the kerb radius.
     fn kerb_return(&self) -> Option<Polygon> {
-        rounded(&|arm, beyond_m| self.kerb([self.from, self.to][arm], beyond_m), self.turn_rad, self.kerb_radius_m)
+        let kerb = |arm: usize, beyond_m: f64| self.kerb([self.from, self.to][arm], beyond_m);
+        rounded(&kerb, self.turn_rad, self.kerb_radius_m, ARC_STEP_RAD)
     }
 
     /// The edge of a road near the node on the inside of the turn, or a line `beyond_m` outside it. It is extended
@@ -153,12 +154,13 @@ impl Ground<'_> {
     }
 }
 
-/// The corner between two roads, rounded with a kerb radius. `kerb` is the edge of either road on the inside of the
+/// The corner between two roads, rounded with a kerb radius in chords of an angle. `kerb` is the edge of either road on the inside of the
 /// turn from the one into the other, or a line the given distance outside it.
 pub(super) fn rounded(
     kerb: &dyn Fn(usize, f64) -> Vec<[f64; 2]>,
     turn_rad: f64,
     kerb_radius_m: f64,
+    chord_rad: f64,
 ) -> Option<Polygon> {
     if kerb_radius_m <= 0.0 {
         return None;
@@ -180,7 +182,7 @@ pub(super) fn rounded(
         return None;
     }
     let [a, b] = corner.inward();
-    let mut ring = arc(centre, start, rounds);
+    let mut ring = arc(centre, start, rounds, chord_rad);
     ring.push(end);
     ring.push(along(end, v, OVERLAP_M));
     ring.push(add(add(corner.at, a), b));
@@ -202,8 +204,8 @@ fn nearest(line: &[[f64; 2]], p: [f64; 2]) -> Option<([f64; 2], f64)> {
 
 /// Points on the tangents of the arc, whose polygon lies on the road's side. The kerb bulges towards the vehicle, so
 /// chords would cut it off; each point is moved outside onto the tangents.
-fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
-    let steps = (turned.abs() / ARC_STEP_RAD).ceil().max(1.0);
+fn arc(centre: [f64; 2], start: [f64; 2], turned: f64, chord_rad: f64) -> Vec<[f64; 2]> {
+    let steps = (turned.abs() / chord_rad).ceil().max(1.0);
     let step = turned / steps;
     let out = 1.0 / (0.5 * step).cos();
     let from = [start[0] - centre[0], start[1] - centre[1]];

@@ -8,7 +8,7 @@
 use geo::{BooleanOps, MultiPolygon, Polygon};
 
 use super::TurnParams;
-use super::area::{CROSSING_M, Corner, along, polygon, rounded};
+use super::area::{ARC_STEP_RAD, CROSSING_M, Corner, along, polygon, rounded};
 use super::path::wrapped;
 use super::surface::surface;
 use crate::corridor::Frame;
@@ -26,6 +26,8 @@ pub(super) const MOST_NODES: usize = 32;
 /// Least angle between two mouths of a road that goes on, radians; and how far each is extended over the node, metres.
 const GOES_ON_RAD: f64 = 2.36;
 const JOINT_M: f64 = 2.0;
+/// As [`ARC_STEP_RAD`], for people to look at.
+const COARSE_ARC_STEP_RAD: f64 = 0.2;
 
 /// The carriageway of a road from the node outwards.
 struct Mouth<'a> {
@@ -54,7 +56,7 @@ pub(super) fn parts(
     if mouths.iter().any(|mouth| mouth.road.roundabout) {
         return Vec::new();
     }
-    parts_of(&mouths, node, params, mapped)
+    parts_of(&mouths, node, params, mapped, ARC_STEP_RAD)
 }
 
 /// All that the crossing at a node covers, and the number of its roads. A ring's arcs are roads like others, but have no corner between
@@ -67,11 +69,17 @@ pub(super) fn whole(
     mapped: Option<&MultiPolygon>,
 ) -> (Vec<Polygon>, usize) {
     let mouths = mouths(network, node, &[], frame, params);
-    (parts_of(&mouths, node, params, mapped), mouths.len())
+    (parts_of(&mouths, node, params, mapped, COARSE_ARC_STEP_RAD), mouths.len())
 }
 
 /// The mouths of roads that are not the turn's own, what they share, the outsides of bends, and the corners.
-fn parts_of(mouths: &[Mouth<'_>], node: i64, params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
+fn parts_of(
+    mouths: &[Mouth<'_>],
+    node: i64,
+    params: &TurnParams,
+    mapped: Option<&MultiPolygon>,
+    chord_rad: f64,
+) -> Vec<Polygon> {
     let mut parts: Vec<Polygon> =
         mouths.iter().filter(|mouth| !mouth.own).filter_map(|mouth| mouth.outline(MOUTH_M, 0.0)).collect();
     for (i, a) in mouths.iter().enumerate() {
@@ -91,7 +99,7 @@ fn parts_of(mouths: &[Mouth<'_>], node: i64, params: &TurnParams, mapped: Option
         // The turn's own corner is made from its corridors. Two arcs of a ring have none.
         let left_out = (a.own && b.own) || (a.road.roundabout && b.road.roundabout);
         if !left_out {
-            parts.extend(corner(node, [a, b], params, mapped));
+            parts.extend(corner(node, [a, b], params, mapped, chord_rad));
         }
     }
     parts
@@ -213,7 +221,13 @@ fn common(a: Option<Polygon>, b: Option<Polygon>) -> Vec<Polygon> {
 }
 
 /// The corner between a mouth and the next one counter-clockwise.
-fn corner(node: i64, [a, b]: [&Mouth<'_>; 2], params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
+fn corner(
+    node: i64,
+    [a, b]: [&Mouth<'_>; 2],
+    params: &TurnParams,
+    mapped: Option<&MultiPolygon>,
+    chord_rad: f64,
+) -> Vec<Polygon> {
     let between = (b.bearing - a.bearing).rem_euclid(std::f64::consts::TAU);
     if between >= std::f64::consts::PI {
         return Vec::new();
@@ -240,7 +254,7 @@ fn corner(node: i64, [a, b]: [&Mouth<'_>; 2], params: &TurnParams, mapped: Optio
             .map_or_else(Vec::new, |corner| corner.mapped(surface)),
         None => {
             let radius_m = params.kerbs.at(a.network, node, [a.edge, b.edge]);
-            rounded(&kerb, turn_rad, radius_m).into_iter().collect()
+            rounded(&kerb, turn_rad, radius_m, chord_rad).into_iter().collect()
         }
     }
 }
