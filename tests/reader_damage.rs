@@ -1,6 +1,6 @@
 //! Damaged files: cut anywhere, or changed anywhere. The reader never panics, never takes more memory than a few
 //! blobs need, and what it accepts is sound. Overflow checks are on in a test build.
-
+#![allow(unsafe_code)] // An allocator that counts.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 #[path = "support/accounts.rs"]

@@ -180,9 +180,9 @@ async fn edges(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Optio
             sqlx::query(sql).bind(fid).execute(&mut *c).await?;
         }
         let bounds = write_edge(c, &mut bulk, (index, row), (&road, &ranges)).await?;
-        boxes.add(fid)?;
+        boxes.add(fid);
         for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
-            boxes.add(side)?;
+            boxes.add(side);
         }
         boxes.end_row(c).await?;
     }

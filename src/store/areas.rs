@@ -21,13 +21,13 @@ pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> 
     let mut bulk = Bulk::new("area", 4);
     for (no, area) in (1_i64..).zip(areas) {
         let (geom, _) = blob::encode(area.ring.iter().copied()).ok_or_else(|| content("an area has no shape"))?;
-        bulk.add(no)?;
-        bulk.add(area.way_id)?;
+        bulk.add(no);
+        bulk.add(area.way_id);
         bulk.add(match area.kind {
             AreaKind::Road(class) => class.name(),
             AreaKind::Island => ISLAND,
-        })?;
-        bulk.add(geom)?;
+        });
+        bulk.add(geom);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await

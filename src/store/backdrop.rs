@@ -75,18 +75,18 @@ pub(super) async fn insert(c: &mut SqliteConnection, things: impl Iterator<Item 
         let object = format!("{} {id}", object.name());
         let (geom, bounds) =
             blob::encode_shape(&shape).ok_or_else(|| content(format!("the shape of {object} is empty")))?;
-        rows.add(fid)?;
-        rows.add(kind.name())?;
-        rows.add(object)?;
-        rows.add(name.map(String::from))?;
-        rows.add(geom)?;
+        rows.add(fid);
+        rows.add(kind.name());
+        rows.add(object);
+        rows.add(name.as_deref());
+        rows.add(geom);
         rows.end_row(c).await?;
         let Bounds { west, south, east, north } = bounds;
-        boxes.add(fid)?;
+        boxes.add(fid);
         for side in [west, east, south, north] {
-            boxes.add(side)?;
+            boxes.add(side);
         }
-        boxes.add(size_deg(&shape, bounds))?;
+        boxes.add(size_deg(&shape, bounds));
         boxes.end_row(c).await?;
     }
     rows.finish(c).await?;

@@ -1,102 +1,186 @@
-//! Bulk insertion with many rows per statement. A statement for each row takes ten times as long, because each statement is
-//! handed to SQLite's thread (1 M rows of 8 columns: 188 k rows/s one by one, 1,880 k rows/s by 1,000 and more).
+//! Bulk insertion: batches of rows, each row by the same prepared statement.
+//!
+//! sqlx hands each statement to its own thread, and allocates each text twice. Here the caller's thread executes the statement for all rows of a
+//! batch while it holds sqlx's connection.
 
+use std::num::NonZeroU8;
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use sqlx::sqlite::{Sqlite, SqliteArguments, SqliteConnection};
-use sqlx::{Arguments, AssertSqlSafe, Encode, Type};
+use rusqlite::types::{ToSqlOutput, ValueRef};
+use sqlx::sqlite::SqliteConnection;
 
-/// SQLite's limit on the parameters of a statement (`SQLITE_MAX_VARIABLE_NUMBER`).
-const MOST_PARAMETERS: usize = 32_766;
-const MOST_ROWS: usize = 2_000;
+use super::error::of_rusqlite;
 
-/// A statement with the values of many rows.
-pub(super) struct Insert {
+/// Rows of a batch.
+const ROWS: usize = 1_000;
+
+/// Rows of one table.
+pub(super) struct Batch {
     sql: Arc<str>,
-    values: SqliteArguments,
-    /// Whether the same statement follows with other values.
-    often: bool,
+    columns: usize,
+    values: Vec<Value>,
+    /// Texts and blobs, one after the other.
+    bytes: Vec<u8>,
 }
 
-impl Insert {
-    /// Hands the statement to SQLite.
-    pub(super) async fn execute(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
-        let query = sqlx::query_with(AssertSqlSafe(self.sql), self.values).persistent(self.often);
-        query.execute(connection).await.map(|_| ())
+/// A value of a row. Of texts and blobs, the end in the batch's bytes; they begin where the one before ends.
+#[derive(Clone, Copy)]
+enum Value {
+    Null,
+    Integer(i64),
+    Real(f64),
+    Text(usize),
+    Blob(usize),
+}
+
+impl Batch {
+    /// Inserts the rows.
+    #[allow(unsafe_code)]
+    pub(super) async fn insert(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
+        let mut handle = connection.lock_handle().await?;
+        // SAFETY: the handle is that of an open connection. The lock keeps sqlx from it until `db` is dropped, which does not close it.
+        let db = unsafe { rusqlite::Connection::from_handle(handle.as_raw_handle().as_ptr()) }.map_err(of_rusqlite)?;
+        self.insert_into(&db).map_err(of_rusqlite)
+    }
+
+    fn insert_into(&self, db: &rusqlite::Connection) -> rusqlite::Result<()> {
+        let mut insert = db.prepare(&self.sql)?;
+        let mut start = 0;
+        for row in self.values.chunks_exact(self.columns) {
+            for (column, value) in (1..).zip(row) {
+                let mut bytes = |end: usize| &self.bytes[std::mem::replace(&mut start, end)..end];
+                let value = match *value {
+                    Value::Null => ValueRef::Null,
+                    Value::Integer(value) => ValueRef::Integer(value),
+                    Value::Real(value) => ValueRef::Real(value),
+                    Value::Text(end) => ValueRef::Text(bytes(end)),
+                    Value::Blob(end) => ValueRef::Blob(bytes(end)),
+                };
+                insert.raw_bind_parameter(column, ToSqlOutput::Borrowed(value))?;
+            }
+            insert.raw_execute()?;
+        }
+        Ok(())
     }
 }
 
-/// Where statements go.
+/// Where batches go.
 pub(super) trait Takes {
-    /// Takes the next statement.
-    async fn take(&mut self, insert: Insert) -> Result<(), sqlx::Error>;
+    /// Takes the next batch.
+    async fn take(&mut self, batch: Batch) -> Result<(), sqlx::Error>;
 }
 
 impl Takes for SqliteConnection {
-    async fn take(&mut self, insert: Insert) -> Result<(), sqlx::Error> {
-        insert.execute(self).await
+    async fn take(&mut self, batch: Batch) -> Result<(), sqlx::Error> {
+        batch.insert(self).await
     }
 }
 
-/// Statements for a connection that another thread works on.
-pub(super) struct Ahead(pub(super) SyncSender<Insert>);
+/// Batches for a connection that another thread works on.
+pub(super) struct Ahead(pub(super) SyncSender<Batch>);
 
 impl Takes for Ahead {
     /// Fails if the other thread has ended, whose error says why.
-    async fn take(&mut self, insert: Insert) -> Result<(), sqlx::Error> {
-        self.0.send(insert).map_err(|_| sqlx::Error::WorkerCrashed)
+    async fn take(&mut self, batch: Batch) -> Result<(), sqlx::Error> {
+        self.0.send(batch).map_err(|_| sqlx::Error::WorkerCrashed)
     }
 }
 
-/// Collects rows of one table and inserts many of them with each statement. Call [`Bulk::finish`] at the end.
+/// Collects rows of one table and inserts many of them together. Call [`Bulk::finish`] at the end.
 pub(super) struct Bulk {
-    into: &'static str,
-    columns: usize,
-    rows_a_statement: usize,
-    whole: Arc<str>,
-    values: SqliteArguments,
-    rows: usize,
+    batch: Batch,
 }
 
 impl Bulk {
     /// `into` is the table, with a list of columns if rows have only some of them, as in `edge (fid, geom)`.
     pub(super) fn new(into: &'static str, columns: usize) -> Self {
-        let rows_a_statement = (MOST_PARAMETERS / columns).min(MOST_ROWS);
-        let whole = Self::statement(into, columns, rows_a_statement).into();
-        Self { into, columns, rows_a_statement, whole, values: SqliteArguments::default(), rows: 0 }
-    }
-
-    fn statement(into: &str, columns: usize, rows: usize) -> String {
-        let row = format!("({})", vec!["?"; columns].join(","));
-        format!("INSERT INTO {into} VALUES {}", vec![row.as_str(); rows].join(","))
+        let sql = format!("INSERT INTO {into} VALUES ({})", vec!["?"; columns].join(","));
+        Self { batch: Batch { sql: sql.into(), columns, values: Vec::new(), bytes: Vec::new() } }
     }
 
     /// Adds the next value of the current row.
-    pub(super) fn add<'t, T: Encode<'t, Sqlite> + Type<Sqlite>>(&mut self, value: T) -> Result<(), sqlx::Error> {
-        self.values.add(value).map_err(sqlx::Error::Encode)
+    pub(super) fn add(&mut self, value: impl Column) {
+        value.add_to(&mut self.batch);
     }
 
-    /// Ends the current row. Inserts the collected rows if there are enough for a statement.
+    /// Ends the current row. Inserts the collected rows if there are enough.
     pub(super) async fn end_row(&mut self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
-        self.rows += 1;
-        debug_assert_eq!(self.values.len(), self.rows * self.columns);
-        if self.rows == self.rows_a_statement {
-            let mut next = SqliteArguments::default();
-            next.reserve(self.values.len(), 0);
-            let values = std::mem::replace(&mut self.values, next);
-            to.take(Insert { sql: Arc::clone(&self.whole), values, often: true }).await?;
-            self.rows = 0;
+        let Batch { columns, values, bytes, .. } = &self.batch;
+        debug_assert_eq!(values.len() % columns, 0);
+        if values.len() == ROWS * columns {
+            let (values, bytes) = (Vec::with_capacity(values.len()), Vec::with_capacity(bytes.len()));
+            let next = Batch { sql: Arc::clone(&self.batch.sql), columns: *columns, values, bytes };
+            to.take(std::mem::replace(&mut self.batch, next)).await?;
         }
         Ok(())
     }
 
     /// Inserts the rows that are left.
     pub(super) async fn finish(self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
-        if self.rows == 0 {
-            return Ok(());
+        if self.batch.values.is_empty() { Ok(()) } else { to.take(self.batch).await }
+    }
+}
+
+/// What can be a column's value.
+pub(super) trait Column {
+    fn add_to(self, batch: &mut Batch);
+}
+
+impl<T: Column> Column for Option<T> {
+    fn add_to(self, batch: &mut Batch) {
+        match self {
+            Some(value) => value.add_to(batch),
+            None => batch.values.push(Value::Null),
         }
-        let sql = Self::statement(self.into, self.columns, self.rows).into();
-        to.take(Insert { sql, values: self.values, often: false }).await
+    }
+}
+
+impl Column for f64 {
+    fn add_to(self, batch: &mut Batch) {
+        batch.values.push(Value::Real(self));
+    }
+}
+
+impl Column for i64 {
+    fn add_to(self, batch: &mut Batch) {
+        batch.values.push(Value::Integer(self));
+    }
+}
+
+/// Types that become an `i64`.
+macro_rules! integers {
+    ($($integer:ty),*) => { $(impl Column for $integer {
+        fn add_to(self, batch: &mut Batch) {
+            i64::from(self).add_to(batch);
+        }
+    })* };
+}
+
+integers!(bool, u8, u16, u32, i32);
+
+impl Column for NonZeroU8 {
+    fn add_to(self, batch: &mut Batch) {
+        self.get().add_to(batch);
+    }
+}
+
+impl Column for &str {
+    fn add_to(self, batch: &mut Batch) {
+        batch.bytes.extend_from_slice(self.as_bytes());
+        batch.values.push(Value::Text(batch.bytes.len()));
+    }
+}
+
+impl Column for String {
+    fn add_to(self, batch: &mut Batch) {
+        self.as_str().add_to(batch);
+    }
+}
+
+impl Column for Vec<u8> {
+    fn add_to(self, batch: &mut Batch) {
+        batch.bytes.extend_from_slice(&self);
+        batch.values.push(Value::Blob(batch.bytes.len()));
     }
 }

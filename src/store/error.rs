@@ -1,6 +1,9 @@
 //! Errors of a database file. Every message names the file and says what to do.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+
+use sqlx::error::{DatabaseError, ErrorKind};
 
 use crate::osm::facts::Policy;
 use crate::words::Named as _;
@@ -171,10 +174,7 @@ impl StoreError {
         if let sqlx::Error::Decode(detail) = &source {
             return Self::Damaged { path, detail: detail.to_string() };
         }
-        let code = source
-            .as_database_error()
-            .and_then(sqlx::error::DatabaseError::code)
-            .and_then(|code| code.parse::<i32>().ok());
+        let code = source.as_database_error().and_then(DatabaseError::code).and_then(|code| code.parse::<i32>().ok());
         // The low byte is the primary result code: https://www.sqlite.org/rescode.html
         match code.map(|code| code & 0xff) {
             Some(5 | 6) => Self::Busy(path),
@@ -193,6 +193,52 @@ impl StoreError {
             std::io::ErrorKind::WouldBlock => Self::Busy(path),
             _ => Self::Io { path, source },
         }
+    }
+}
+
+/// SQLite's error in the words of sqlx.
+pub(super) fn of_rusqlite(error: rusqlite::Error) -> sqlx::Error {
+    match error {
+        rusqlite::Error::SqliteFailure(failure, message) => {
+            let message = message.unwrap_or_else(|| failure.to_string());
+            sqlx::Error::Database(Box::new(Failure { code: failure.extended_code, message }))
+        }
+        other => sqlx::Error::Protocol(other.to_string()),
+    }
+}
+
+/// A failure of SQLite.
+#[derive(Debug, thiserror::Error)]
+#[error("(code: {code}) {message}")]
+struct Failure {
+    /// SQLite's extended result code.
+    code: i32,
+    message: String,
+}
+
+impl DatabaseError for Failure {
+    fn message(&self) -> &str {
+        &self.message
+    }
+
+    fn code(&self) -> Option<Cow<'_, str>> {
+        Some(self.code.to_string().into())
+    }
+
+    fn as_error(&self) -> &(dyn std::error::Error + Send + Sync + 'static) {
+        self
+    }
+
+    fn as_error_mut(&mut self) -> &mut (dyn std::error::Error + Send + Sync + 'static) {
+        self
+    }
+
+    fn into_error(self: Box<Self>) -> Box<dyn std::error::Error + Send + Sync + 'static> {
+        self
+    }
+
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
     }
 }
 

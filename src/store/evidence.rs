@@ -171,7 +171,7 @@ pub(super) async fn write(c: &mut SqliteConnection, register: &Register, time: &
         if let Some((_, around)) = entry.row.geometry() {
             bounds = Some(bounds.map_or(around, |known| known.union(around)));
         }
-        add(&mut bulk, entry)?;
+        add(&mut bulk, entry);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
@@ -184,12 +184,12 @@ pub(super) async fn write(c: &mut SqliteConnection, register: &Register, time: &
             Target::Corner { node, edges } => (None, Some(node), edges),
             Target::Area(node) => (None, Some(node), None),
         };
-        bulk.add(no)?;
-        bulk.add(edge)?;
-        bulk.add(node)?;
-        bulk.add(edges.map(|edges| edges[0]))?;
-        bulk.add(edges.map(|edges| edges[1]))?;
-        bulk.add(counts)?;
+        bulk.add(no);
+        bulk.add(edge);
+        bulk.add(node);
+        bulk.add(edges.map(|edges| edges[0]));
+        bulk.add(edges.map(|edges| edges[1]));
+        bulk.add(counts);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
@@ -202,34 +202,34 @@ pub(super) async fn write(c: &mut SqliteConnection, register: &Register, time: &
     if register.entries.is_empty() { Ok(()) } else { add_layers(c, bounds, time).await }
 }
 
-fn add(bulk: &mut Bulk, entry: &Entry) -> Sql<()> {
+fn add(bulk: &mut Bulk, entry: &Entry) {
     let row = &entry.row;
     let columns = row.columns();
-    bulk.add(entry.no)?;
-    bulk.add(columns.geom)?;
-    bulk.add(entry.file.as_str())?;
-    bulk.add(i64::try_from(row.number).unwrap_or(i64::MAX))?;
-    bulk.add(row.id.as_deref())?;
-    bulk.add(row.quantity.name())?;
-    bulk.add(columns.value)?;
-    bulk.add(row.sigma)?;
-    bulk.add(row.lower())?;
-    bulk.add(columns.vehicle)?;
-    bulk.add(row.along.name())?;
-    bulk.add(columns.way_id)?;
-    bulk.add(columns.nodes.map(|nodes| nodes[0]))?;
-    bulk.add(columns.nodes.map(|nodes| nodes[1]))?;
-    bulk.add(columns.edge_id)?;
-    bulk.add(columns.junction)?;
-    bulk.add(columns.edges.map(|edges| edges[0]))?;
-    bulk.add(columns.edges.map(|edges| edges[1]))?;
-    bulk.add(row.source.as_str())?;
+    bulk.add(entry.no);
+    bulk.add(columns.geom);
+    bulk.add(entry.file.as_str());
+    bulk.add(i64::try_from(row.number).unwrap_or(i64::MAX));
+    bulk.add(row.id.as_deref());
+    bulk.add(row.quantity.name());
+    bulk.add(columns.value);
+    bulk.add(row.sigma);
+    bulk.add(row.lower());
+    bulk.add(columns.vehicle);
+    bulk.add(row.along.name());
+    bulk.add(columns.way_id);
+    bulk.add(columns.nodes.map(|nodes| nodes[0]));
+    bulk.add(columns.nodes.map(|nodes| nodes[1]));
+    bulk.add(columns.edge_id);
+    bulk.add(columns.junction);
+    bulk.add(columns.edges.map(|edges| edges[0]));
+    bulk.add(columns.edges.map(|edges| edges[1]));
+    bulk.add(row.source.as_str());
     for text in [&row.date, &row.licence, &row.name, &row.note] {
-        bulk.add(text.as_deref())?;
+        bulk.add(text.as_deref());
     }
-    bulk.add(entry.state.name())?;
-    bulk.add(entry.usage().map(Named::name))?;
-    bulk.add(entry.why.as_deref())
+    bulk.add(entry.state.name());
+    bulk.add(entry.usage().map(Named::name));
+    bulk.add(entry.why.as_deref());
 }
 
 /// Registers the measurements as a layer, and their places as a table.

@@ -89,10 +89,10 @@ pub(super) async fn insert(
         let encoded = blob::encode_polygons(&polygons);
         let (geom, around) = encoded.ok_or_else(|| content(format!("the area of junction {node} is empty")))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
-        bulk.add(node)?;
-        bulk.add(roads as i64)?;
-        bulk.add(kerb_source.map(KerbSource::name))?;
-        bulk.add(geom)?;
+        bulk.add(node);
+        bulk.add(roads as i64);
+        bulk.add(kerb_source.map(KerbSource::name));
+        bulk.add(geom);
         bulk.end_row(to).await?;
     }
     bulk.finish(to).await?;

@@ -67,21 +67,21 @@ impl Roads {
         }
         let country = std::str::from_utf8(&road.country).map_err(|_| content("a country code is not text"))?;
         let bulk = &mut self.bulk;
-        bulk.add(i64::from(no) + 1)?;
-        bulk.add(road.way_id)?;
-        bulk.add(highway(road.class, road.link))?;
-        bulk.add(road.roundabout)?;
-        bulk.add(road.oneway.name())?;
-        bulk.add(row.name.as_deref())?;
-        bulk.add(row.reference.as_deref())?;
-        bulk.add(road.lanes)?;
-        bulk.add(country)?;
-        bulk.add(road.left_hand_traffic)?;
+        bulk.add(i64::from(no) + 1);
+        bulk.add(road.way_id);
+        bulk.add(highway(road.class, road.link));
+        bulk.add(road.roundabout);
+        bulk.add(road.oneway.name());
+        bulk.add(row.name.as_deref());
+        bulk.add(row.reference.as_deref());
+        bulk.add(road.lanes);
+        bulk.add(country);
+        bulk.add(road.left_hand_traffic);
         for no in section.into_iter().chain(legal) {
-            bulk.add(no)?;
+            bulk.add(no);
         }
         for limit in road.max_speed_km_h {
-            bulk.add(limit)?;
+            bulk.add(limit);
         }
         bulk.end_row(to).await
     }
@@ -170,9 +170,9 @@ impl Narrowings {
     /// Writes those of an edge whose piece of road is a new one.
     pub(super) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &EdgeRow) -> Sql<()> {
         for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
-            self.0.add(no)?;
-            self.0.add(narrowing.vertex)?;
-            self.0.add(decimal(narrowing.passage_m))?;
+            self.0.add(no);
+            self.0.add(narrowing.vertex);
+            self.0.add(decimal(narrowing.passage_m));
             self.0.end_row(to).await?;
         }
         Ok(())
@@ -195,49 +195,48 @@ pub(super) async fn write_edge(
         shape.reverse();
     }
     let (geom, bounds) = blob::encode(shape.iter().copied()).ok_or_else(|| content("an edge has no shape"))?;
-    bulk.add(i64::from(index) + 1)?;
-    bulk.add(edge.id)?;
-    bulk.add(road.road.way_id)?;
-    bulk.add(edge.from_node)?;
-    bulk.add(edge.to_node)?;
-    bulk.add(edge.direction.name())?;
-    bulk.add(geom)?;
-    bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)))?;
-    add_road_columns(bulk, road, &edge, &section)?;
-    bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()))?;
-    bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()))?;
-    add_legal(bulk, &edge.legal)?;
-    bulk.add(edge.barred)?;
-    bulk.add(edge.cut)?;
-    bulk.add(i64::from(road_no) + 1)?;
-    bulk.add(ranges.shape.start)?;
-    bulk.add(ranges.narrowings.start)?;
-    bulk.add(ranges.narrowings.end)?;
+    bulk.add(i64::from(index) + 1);
+    bulk.add(edge.id);
+    bulk.add(road.road.way_id);
+    bulk.add(edge.from_node);
+    bulk.add(edge.to_node);
+    bulk.add(edge.direction.name());
+    bulk.add(geom);
+    bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)));
+    add_road_columns(bulk, road, &edge, &section);
+    bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()));
+    bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()));
+    add_legal(bulk, &edge.legal);
+    bulk.add(edge.barred);
+    bulk.add(edge.cut);
+    bulk.add(i64::from(road_no) + 1);
+    bulk.add(ranges.shape.start);
+    bulk.add(ranges.narrowings.start);
+    bulk.add(ranges.narrowings.end);
     bulk.end_row(to).await?;
     Ok(bounds)
 }
 
 /// Adds the columns of the road that users want with each edge.
-fn add_road_columns(bulk: &mut Bulk, row: &RoadRow, edge: &Edge, section: &CrossSection) -> Sql<()> {
+fn add_road_columns(bulk: &mut Bulk, row: &RoadRow, edge: &Edge, section: &CrossSection) {
     let road = &row.road;
-    bulk.add(highway(road.class, road.link))?;
-    bulk.add(row.name.as_deref())?;
-    bulk.add(row.reference.as_deref())?;
-    bulk.add(road.oneway.name())?;
-    bulk.add(road.left_hand_traffic)?;
-    bulk.add(road.lanes)?;
-    bulk.add(road.max_speed_km_h[edge.direction as usize])?;
-    add_widths(bulk, section)
+    bulk.add(highway(road.class, road.link));
+    bulk.add(row.name.as_deref());
+    bulk.add(row.reference.as_deref());
+    bulk.add(road.oneway.name());
+    bulk.add(road.left_hand_traffic);
+    bulk.add(road.lanes);
+    bulk.add(road.max_speed_km_h[edge.direction as usize]);
+    add_widths(bulk, section);
 }
 
 /// Adds the columns of an edge's widths.
-pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
+pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) {
     for strip in [section.lane, section.direction, section.carriageway] {
         // People read this width, so it is rounded to millimetres. Certificates use the strip's edges in `section`.
-        bulk.add(strip.map(|strip| (f64::from(strip.width_m()) * 1000.0).round() / 1000.0))?;
-        bulk.add(strip.map(|strip| strip.source.name()))?;
+        bulk.add(strip.map(|strip| (f64::from(strip.width_m()) * 1000.0).round() / 1000.0));
+        bulk.add(strip.map(|strip| strip.source.name()));
     }
-    Ok(())
 }
 
 /// Writes the strokes, which come in the order of their first edges.
@@ -250,18 +249,18 @@ pub(super) async fn write_strokes(
     let mut position = 0_i64;
     for (no, row) in (1_i64..).zip(strokes) {
         let StrokeRow { approach, edges, closed } = row?;
-        bulk.add(no)?;
+        bulk.add(no);
         for list in [&approach, &edges] {
-            bulk.add(position)?;
+            bulk.add(position);
             for &edge in list {
                 position += 1;
-                stroke_edges.add(position)?;
-                stroke_edges.add(i64::from(edge) + 1)?;
+                stroke_edges.add(position);
+                stroke_edges.add(i64::from(edge) + 1);
                 stroke_edges.end_row(to).await?;
             }
-            bulk.add(position)?;
+            bulk.add(position);
         }
-        bulk.add(closed)?;
+        bulk.add(closed);
         bulk.end_row(to).await?;
     }
     bulk.finish(to).await?;
@@ -273,9 +272,9 @@ async fn spatial_index(to: &mut impl Takes, boxes: Sorted<(u64, u32), Bounds>) -
     let mut bulk = Bulk::new("rtree_edge_geom", 5);
     for row in boxes {
         let ((_, index), bounds) = row?;
-        bulk.add(i64::from(index) + 1)?;
+        bulk.add(i64::from(index) + 1);
         for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
-            bulk.add(side)?;
+            bulk.add(side);
         }
         bulk.end_row(to).await?;
     }
@@ -316,18 +315,12 @@ impl<K: std::hash::Hash + Eq> Distinct<K> {
         Self { numbers: FxHashMap::default(), bulk: Bulk::new(table, columns) }
     }
 
-    async fn number<T>(
-        &mut self,
-        to: &mut impl Takes,
-        key: K,
-        value: &T,
-        add: fn(&mut Bulk, &T) -> Sql<()>,
-    ) -> Sql<i64> {
+    async fn number<T>(&mut self, to: &mut impl Takes, key: K, value: &T, add: fn(&mut Bulk, &T)) -> Sql<i64> {
         let next = self.numbers.len() as i64 + 1;
         let number = *self.numbers.entry(key).or_insert(next);
         if number == next {
-            self.bulk.add(number)?;
-            add(&mut self.bulk, value)?;
+            self.bulk.add(number);
+            add(&mut self.bulk, value);
             self.bulk.end_row(to).await?;
         }
         Ok(number)
@@ -339,13 +332,12 @@ fn section_key(section: &CrossSection) -> [Option<(u32, u32, u8)>; 3] {
         .map(|strip| strip.map(|s| (s.left_m.to_bits(), s.right_m.to_bits(), s.source as u8)))
 }
 
-fn add_section(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
+fn add_section(bulk: &mut Bulk, section: &CrossSection) {
     for strip in [section.lane, section.direction, section.carriageway] {
-        bulk.add(strip.map(|Strip { left_m, .. }| decimal(left_m)))?;
-        bulk.add(strip.map(|Strip { right_m, .. }| decimal(right_m)))?;
-        bulk.add(strip.map(|Strip { source, .. }| source.name()))?;
+        bulk.add(strip.map(|Strip { left_m, .. }| decimal(left_m)));
+        bulk.add(strip.map(|Strip { right_m, .. }| decimal(right_m)));
+        bulk.add(strip.map(|Strip { source, .. }| source.name()));
     }
-    Ok(())
 }
 
 /// An edge's limits, in the order of the columns of `legal` and `edge`, with their names in `unreadable_limits`.
@@ -371,15 +363,15 @@ fn legal_key(legal: &Legal) -> LegalKey {
     (limits(legal).map(|(limit, _)| key(limit)), legal.hgv as u8, legal.motor_vehicle as u8)
 }
 
-fn add_legal(bulk: &mut Bulk, legal: &Legal) -> Sql<()> {
+fn add_legal(bulk: &mut Bulk, legal: &Legal) {
     let limits = limits(legal);
     for (limit, _) in limits {
-        bulk.add(if let Limit::At(value) = limit { Some(decimal(value)) } else { None })?;
+        bulk.add(if let Limit::At(value) = limit { Some(decimal(value)) } else { None });
     }
     let unreadable: Vec<_> = limits.iter().filter(|(limit, _)| *limit == Limit::Unreadable).map(|row| row.1).collect();
-    bulk.add((!unreadable.is_empty()).then(|| unreadable.join(",")))?;
-    bulk.add(legal.hgv.name())?;
-    bulk.add(legal.motor_vehicle.name())
+    bulk.add((!unreadable.is_empty()).then(|| unreadable.join(",")));
+    bulk.add(legal.hgv.name());
+    bulk.add(legal.motor_vehicle.name());
 }
 
 /// The shortest decimal of a single-precision value, such as 3.8 and not 3.799999952. It converts back to the same bits; if it

@@ -26,16 +26,16 @@ pub(super) struct Packed {
 
 impl Packed {
     /// Adds the columns that certificates of edges and turns have in common, from `fid` on.
-    pub(super) fn add_to(&self, bulk: &mut Bulk) -> Result<(), sqlx::Error> {
-        bulk.add(self.fid)?;
-        bulk.add(self.verdict_no)?;
-        bulk.add(self.rsc_mm)?;
-        bulk.add(self.rsc_published_mm)?;
-        bulk.add(self.hinge_margin_cdeg)?;
-        bulk.add(self.shrink_milli)?;
-        bulk.add(self.limiting_s_dm)?;
-        bulk.add(self.limiting_at)?;
-        bulk.add(self.needs_cm[0])
+    pub(super) fn add_to(&self, bulk: &mut Bulk) {
+        bulk.add(self.fid);
+        bulk.add(self.verdict_no);
+        bulk.add(self.rsc_mm);
+        bulk.add(self.rsc_published_mm);
+        bulk.add(self.hinge_margin_cdeg);
+        bulk.add(self.shrink_milli);
+        bulk.add(self.limiting_s_dm);
+        bulk.add(self.limiting_at);
+        bulk.add(self.needs_cm[0]);
     }
 }
 

@@ -37,10 +37,10 @@ pub(super) async fn insert(
     let mut bulk = Bulk::new(into, 4);
     for plan in plans {
         let plan = plan?;
-        bulk.add(vehicle_no)?;
-        bulk.add(corridor)?;
-        bulk.add(plan.at + 1)?;
-        bulk.add(plan.packed)?;
+        bulk.add(vehicle_no);
+        bulk.add(corridor);
+        bulk.add(plan.at + 1);
+        bulk.add(plan.packed);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await

@@ -74,11 +74,11 @@ pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[Acco
         .await?;
     let mut bulk = Bulk::new("account (run_id, stage, item, outcome, reason, count)", 6);
     for row in account {
-        bulk.add(run_id)?;
+        bulk.add(run_id);
         for text in [&row.stage, &row.item, &row.outcome, &row.reason] {
-            bulk.add(text.as_str())?;
+            bulk.add(text.as_str());
         }
-        bulk.add(i64::try_from(row.count).unwrap_or(i64::MAX))?;
+        bulk.add(i64::try_from(row.count).unwrap_or(i64::MAX));
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;

@@ -263,10 +263,10 @@ async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32
     let mut bulk = Bulk::new("changed", 9);
     for &(index, measure) in edges {
         let edge = network.edges.get(index as usize).ok_or_else(|| content(format!("edge {index} is missing")))?;
-        bulk.add(i64::from(index) + 1)?;
-        add_widths(&mut bulk, &network.section(edge))?;
-        bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()))?;
-        bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()))?;
+        bulk.add(i64::from(index) + 1);
+        add_widths(&mut bulk, &network.section(edge));
+        bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()));
+        bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()));
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;

@@ -25,20 +25,20 @@ pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &mut [Portion
     let mut bulk = Bulk::new("restriction", 6);
     let mut end = 0;
     for (no, PortionRestriction { restriction, edges, .. }) in (1_i64..).zip(restrictions.iter()) {
-        bulk.add(no)?;
-        bulk.add(restriction.relation_id)?;
-        bulk.add(restriction.kind.name())?;
-        bulk.add(restriction.conditional)?;
-        bulk.add(end)?;
+        bulk.add(no);
+        bulk.add(restriction.relation_id);
+        bulk.add(restriction.kind.name());
+        bulk.add(restriction.conditional);
+        bulk.add(end);
         end += edges.len() as i64;
-        bulk.add(end)?;
+        bulk.add(end);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
     let mut bulk = Bulk::new("restriction_edge", 2);
     for (position, &edge) in (1_i64..).zip(restrictions.iter().flat_map(|restriction| &restriction.edges)) {
-        bulk.add(position)?;
-        bulk.add(i64::from(edge) + 1)?;
+        bulk.add(position);
+        bulk.add(i64::from(edge) + 1);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await

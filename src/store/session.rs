@@ -10,7 +10,7 @@ use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use tokio::runtime::Runtime;
 
-use super::bulk::{Ahead, Insert};
+use super::bulk::{Ahead, Batch};
 use super::error::StoreError;
 use crate::sqlite;
 
@@ -57,7 +57,7 @@ impl Session {
     ) -> Result<T, StoreError> {
         let Self { path, runtime, connection } = self;
         let makes = tokio::runtime::Builder::new_current_thread().build().map_err(|e| StoreError::io(path, e))?;
-        let (send, statements) = mpsc::sync_channel::<Insert>(STATEMENTS_AHEAD);
+        let (send, statements) = mpsc::sync_channel::<Batch>(STATEMENTS_AHEAD);
         let done = std::thread::scope(|scope| {
             let writes = scope.spawn(move || {
                 runtime.block_on(async {
@@ -65,7 +65,7 @@ impl Session {
                         if stop.load(Ordering::Relaxed) {
                             return Err(sqlx::Error::WorkerCrashed);
                         }
-                        insert.execute(connection).await?;
+                        insert.insert(connection).await?;
                     }
                     Ok(())
                 })

@@ -71,9 +71,9 @@ pub(super) async fn insert_rows(
     let mut bulk = Bulk::new(COLUMNS, 11);
     for row in rows {
         let row = row?;
-        bulk.add(vehicle_no)?;
-        bulk.add(corridor)?;
-        row.add_to(&mut bulk)?;
+        bulk.add(vehicle_no);
+        bulk.add(corridor);
+        row.add_to(&mut bulk);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await

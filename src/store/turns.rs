@@ -130,19 +130,19 @@ pub(super) async fn write(
         let (index, Record { facts, via_node, restriction, passage }) = turn?;
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
-        bulk.add(i64::from(index) + 1)?;
-        bulk.add(facts.id)?;
-        bulk.add(i64::from(facts.movement.from) + 1)?;
-        bulk.add(i64::from(facts.movement.to) + 1)?;
-        bulk.add(via_node)?;
-        bulk.add(geom)?;
-        bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
-        bulk.add(kind(&facts, passage))?;
-        bulk.add(facts.kerb_radius_m)?;
-        bulk.add(facts.kerb_source.map(KerbSource::name))?;
-        bulk.add(restriction.as_deref())?;
+        bulk.add(i64::from(index) + 1);
+        bulk.add(facts.id);
+        bulk.add(i64::from(facts.movement.from) + 1);
+        bulk.add(i64::from(facts.movement.to) + 1);
+        bulk.add(via_node);
+        bulk.add(geom);
+        bulk.add((facts.angle_deg * 10.0).round() / 10.0);
+        bulk.add(kind(&facts, passage));
+        bulk.add(facts.kerb_radius_m);
+        bulk.add(facts.kerb_source.map(KerbSource::name));
+        bulk.add(restriction.as_deref());
         for arc in [facts.through.first(), facts.through.last()] {
-            bulk.add(arc.map(|&arc| i64::from(arc) + 1))?;
+            bulk.add(arc.map(|&arc| i64::from(arc) + 1));
         }
         bulk.end_row(to).await?;
     }
@@ -165,11 +165,11 @@ pub(super) async fn insert_rows(
     let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
         let row = row?;
-        bulk.add(vehicle_no)?;
-        bulk.add(corridor)?;
-        row.add_to(&mut bulk)?;
-        bulk.add(row.needs_cm[1])?;
-        bulk.add(row.path_no)?;
+        bulk.add(vehicle_no);
+        bulk.add(corridor);
+        row.add_to(&mut bulk);
+        bulk.add(row.needs_cm[1]);
+        bulk.add(row.path_no);
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await
