@@ -2,6 +2,7 @@
 //!
 //! They do not depend on vehicles and policies: the same network gives the same facts.
 
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::area::CORNERS_RAD;
@@ -64,21 +65,25 @@ pub struct TurnFacts {
 /// U-turns are not turns.
 #[must_use]
 pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
-    let mut taken = FxHashSet::default();
     let movements = network.movements();
     let turns = movements.all().iter().filter(|movement| movement.kind == MovementKind::Turn);
     let passage = |Passage { from, to, through, forbidden }| {
         (Movement { from, to, kind: MovementKind::Turn, forbidden }, through)
     };
+    let turns = turns.map(|&movement| (movement, Vec::new())).chain(network.passages().into_iter().map(passage));
+    let mut taken = FxHashSet::default();
+    let mut with_id = |(movement, through): (Movement, Vec<u32>)| {
+        let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
+        let mut id = turn_id(from.id, to.id);
+        while !taken.insert(id) {
+            id = (id + 1) & i64::MAX;
+        }
+        Some((id, [from, to], movement, through))
+    };
+    let turns: Vec<_> = turns.filter_map(&mut with_id).collect();
     turns
-        .map(|&movement| (movement, Vec::new()))
-        .chain(network.passages().into_iter().map(passage))
-        .filter_map(|(movement, through)| {
-            let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
-            let mut id = turn_id(from.id, to.id);
-            while !taken.insert(id) {
-                id = (id + 1) & i64::MAX;
-            }
+        .into_par_iter()
+        .filter_map(|(id, [from, to], movement, through)| {
             let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
             let ends = [through.first(), through.last()];
