@@ -403,10 +403,14 @@ impl FinishTurns<'_> {
             Ok((index as u32, record))
         });
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
-        session.run(async |c| sqlx::query("BEGIN").execute(c).await)?;
+        let indexes = session.run(async |c| {
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            turns::drop_indexes(c).await
+        })?;
         let bounds = session.fill(async |to| turns::write(to, rows).await)?;
         let around = session.fill(async |to| junctions::insert(to, junctions).await)?;
         session.run(async |c| {
+            turns::make_indexes(c, indexes).await?;
             turns::register(c, bounds, &run.finished).await?;
             junctions::register(c, around, &run.finished).await
         })?;
