@@ -179,7 +179,7 @@ impl Making<'_> {
         summary.account.extend(roads.account());
         summary.account.append(&mut of_measurements);
         summary.account.extend(of_strokes);
-        let mut writer = writer.network_complete();
+        let mut writer = writer.network_complete()?;
         if self.settings.turns {
             certifying.turns(&mut roads, &verdicts, &mut writer, &mut finished, &mut summary)?;
         }

@@ -10,7 +10,7 @@ use std::sync::mpsc::SyncSender;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use sqlx::sqlite::SqliteConnection;
 
-use super::error::of_rusqlite;
+use super::error::{content, of_rusqlite};
 
 /// Rows of a batch.
 const ROWS: usize = 1_000;
@@ -24,7 +24,7 @@ pub(super) struct Batch {
     bytes: Vec<u8>,
 }
 
-/// A value of a row. Of texts and blobs, the end in the batch's bytes; they begin where the one before ends.
+/// A value of a row. A text or blob has its end in the batch's bytes. It begins where the one before ends.
 #[derive(Clone, Copy)]
 enum Value {
     Null,
@@ -39,7 +39,8 @@ impl Batch {
     #[allow(unsafe_code)]
     pub(super) async fn insert(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
         let mut handle = connection.lock_handle().await?;
-        // SAFETY: the handle is that of an open connection. The lock keeps sqlx from it until `db` is dropped, which does not close it.
+        // SAFETY: the connection is open. `handle` keeps sqlx away from it and outlives `db`. Dropping `db` does not close it, and leaves its
+        // handlers as they are, as long as rusqlite is built without the feature `hooks`.
         let db = unsafe { rusqlite::Connection::from_handle(handle.as_raw_handle().as_ptr()) }.map_err(of_rusqlite)?;
         self.insert_into(&db).map_err(of_rusqlite)
     }
@@ -107,8 +108,10 @@ impl Bulk {
     /// Ends the current row. Inserts the collected rows if there are enough.
     pub(super) async fn end_row(&mut self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
         let Batch { columns, values, bytes, .. } = &self.batch;
-        debug_assert_eq!(values.len() % columns, 0);
-        if values.len() == ROWS * columns {
+        if values.len() % columns != 0 {
+            return Err(content(format!("a row for {} has not {columns} columns", self.batch.sql)));
+        }
+        if values.len() >= ROWS * columns {
             let (values, bytes) = (Vec::with_capacity(values.len()), Vec::with_capacity(bytes.len()));
             let next = Batch { sql: Arc::clone(&self.batch.sql), columns: *columns, values, bytes };
             to.take(std::mem::replace(&mut self.batch, next)).await?;

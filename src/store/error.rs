@@ -170,10 +170,14 @@ impl StoreError {
 
     /// The error of this crate for an error of SQLite on the file at `path`.
     pub(super) fn sql(path: &Path, source: sqlx::Error) -> Self {
+        let source = match source {
+            sqlx::Error::Decode(detail) => {
+                return Self::Damaged { path: path.to_owned(), detail: detail.to_string() };
+            }
+            sqlx::Error::Io(error) => return Self::io(path, error),
+            other => other,
+        };
         let path = path.to_owned();
-        if let sqlx::Error::Decode(detail) = &source {
-            return Self::Damaged { path, detail: detail.to_string() };
-        }
         let code = source.as_database_error().and_then(DatabaseError::code).and_then(|code| code.parse::<i32>().ok());
         // The low byte is the primary result code: https://www.sqlite.org/rescode.html
         match code.map(|code| code & 0xff) {

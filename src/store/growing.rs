@@ -29,19 +29,19 @@ impl Growing {
     }
 
     /// Begins to write the rows, if that has not begun. Temporary files are made beside `scratch`.
-    pub(super) fn write(self, scratch: &Path) -> Writing {
+    pub(super) fn write(self, scratch: &Path) -> Result<Writing, StoreError> {
         match self {
             Self::Gathering(session, rows) => Writing::begin(session, *rows, scratch),
-            Self::Writing(writing) => writing,
+            Self::Writing(writing) => Ok(writing),
         }
     }
 
     /// The connection, with what came of the network.
     pub(super) fn finish(self, scratch: &Path) -> Result<(Session, Written), StoreError> {
-        self.write(scratch).finish()
+        self.write(scratch)?.finish()
     }
 
-    /// The connection, without the network.
+    /// The connection. A network that is being written is written to its end.
     pub(super) fn without_network(self) -> Result<Session, StoreError> {
         match self {
             Self::Gathering(session, _) => Ok(session),
@@ -58,16 +58,19 @@ pub(super) struct Writing {
 }
 
 impl Writing {
-    fn begin(mut session: Session, rows: NetworkRows, scratch: &Path) -> Self {
+    fn begin(mut session: Session, rows: NetworkRows, scratch: &Path) -> Result<Self, StoreError> {
         let (path, stop) = (session.path.clone(), Arc::new(AtomicBool::new(false)));
         let (stopped, scratch) = (Arc::clone(&stop), scratch.to_owned());
         let (send, done) = mpsc::channel();
-        std::thread::spawn(move || {
+        let begun = std::thread::Builder::new().name("network".to_owned()).spawn(move || {
             let written = session.fill_until(&stopped, async |to| network_write::write(to, rows, &scratch).await);
             // Nobody receives it if the database was given up.
             let _ = send.send(written.map(|written| (session, written)));
         });
-        Self { path, stop, done }
+        match begun {
+            Ok(_) => Ok(Self { path, stop, done }),
+            Err(e) => Err(StoreError::io(&path, e)),
+        }
     }
 
     fn finish(self) -> Result<(Session, Written), StoreError> {

@@ -14,8 +14,8 @@ use super::bulk::{Ahead, Batch};
 use super::error::StoreError;
 use crate::sqlite;
 
-/// Statements that wait for SQLite, some thousand rows each.
-const STATEMENTS_AHEAD: usize = 2;
+/// Batches that wait for SQLite.
+const BATCHES_AHEAD: usize = 2;
 
 /// A connection, its runtime, and the name of the file for messages.
 pub(super) struct Session {
@@ -41,7 +41,7 @@ impl Session {
         self.runtime.block_on(work(&mut self.connection)).map_err(|e| StoreError::sql(&self.path, e))
     }
 
-    /// Adds the rows that `make` makes, while another thread hands them to SQLite. Statements keep their order.
+    /// Adds the rows that `make` makes, while another thread inserts them. Batches keep their order.
     pub(super) fn fill<T>(
         &mut self,
         make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
@@ -57,15 +57,15 @@ impl Session {
     ) -> Result<T, StoreError> {
         let Self { path, runtime, connection } = self;
         let makes = tokio::runtime::Builder::new_current_thread().build().map_err(|e| StoreError::io(path, e))?;
-        let (send, statements) = mpsc::sync_channel::<Batch>(STATEMENTS_AHEAD);
+        let (send, batches) = mpsc::sync_channel::<Batch>(BATCHES_AHEAD);
         let done = std::thread::scope(|scope| {
             let writes = scope.spawn(move || {
                 runtime.block_on(async {
-                    for insert in statements {
+                    for batch in batches {
                         if stop.load(Ordering::Relaxed) {
                             return Err(sqlx::Error::WorkerCrashed);
                         }
-                        insert.insert(connection).await?;
+                        batch.insert(connection).await?;
                     }
                     Ok(())
                 })

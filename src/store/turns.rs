@@ -150,8 +150,8 @@ pub(super) async fn write(
     Ok(bounds)
 }
 
-/// Drops the indexes of the empty table `turn`, and returns the statements that make them. Ids of turns are hashes: an index over all rows
-/// is sorted once, and rows that come one by one would go all over it.
+/// Drops the indexes of the empty table `turn` (`turn_by_id`, `turn_by_edge`), and returns the statements that make them. An index over all
+/// rows is sorted once. Row by row, each id, which is a hash, would go to another page.
 pub(super) async fn drop_indexes(c: &mut SqliteConnection) -> Sql<Vec<String>> {
     let sql = "SELECT name, sql FROM sqlite_schema WHERE type = 'index' AND tbl_name = 'turn' AND sql IS NOT NULL ORDER BY rowid";
     let indexes: Vec<(String, String)> = sqlx::query_as(sql).fetch_all(&mut *c).await?;

@@ -53,12 +53,16 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// 16 KiB. Larger pages make the look-up of single edges slower.
 const PAGE_BYTES: u32 = 8192;
 
+/// Most turns whose indexes are made when all turns are there: SQLite sorts an index in memory, with some 50 bytes a turn.
+const MOST_SORTED: u32 = 10_000_000;
+
 /// The number of a vehicle in a [`Writer`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VehicleNo(u32);
 
 /// A database under construction. If it is dropped unfinished, an older file at its path stays unchanged.
 pub struct Writer {
+    /// Dropped before `part`, which then nobody writes any more.
     growing: Growing,
     /// The stored text of the settings, by the policy's number.
     settings: Vec<String>,
@@ -193,16 +197,18 @@ impl Writer {
     /// follow those of the certificates, because the measures are known only then.
     pub fn portion(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
         let added = self.growing.rows().and_then(|rows| rows.add(portion, measures));
-        added.map_err(|e| StoreError::io(&self.part.path, e))?;
+        added.map_err(|e| StoreError::io(&self.part.target, e))?;
         self.gathered.restrictions.extend(portion.restrictions());
         Ok(())
     }
 
     /// Begins to write the network, which has all its portions, on a thread of its own. [`Writer::finish`] reports what fails there.
-    #[must_use]
-    pub fn network_complete(mut self) -> Self {
-        self.growing = Growing::Writing(self.growing.write(&self.part.path));
-        self
+    ///
+    /// # Errors
+    /// The system refuses a thread.
+    pub fn network_complete(mut self) -> Result<Self, StoreError> {
+        self.growing = Growing::Writing(self.growing.write(&self.part.path)?);
+        Ok(self)
     }
 
     /// Adds the areas of the whole network.
@@ -212,7 +218,7 @@ impl Writer {
 
     /// Adds what lies behind the roads.
     pub fn backdrop(&mut self, things: &[Backdrop]) -> Result<(), StoreError> {
-        self.gathered.add_backdrop(things).map_err(|e| StoreError::io(&self.part.path, e))
+        self.gathered.add_backdrop(things).map_err(|e| StoreError::io(&self.part.target, e))
     }
 
     /// Adds a vehicle. Ids must be distinct.
@@ -236,14 +242,14 @@ impl Writer {
 
     pub(super) fn push(&mut self, vehicle: VehicleNo, policy: Policy, packed: Packed) -> Result<(), StoreError> {
         let waiting = self.certificates.certificate((vehicle.0, corridor_no(policy)), packed);
-        waiting.map_err(|e| StoreError::io(&self.part.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.target, e))
     }
 
     /// Adds the plan of a stroke whose plan is not the centreline, by the index of its first edge in the whole network. A stroke has at most
     /// one.
     pub fn plan(&mut self, vehicle: VehicleNo, policy: Policy, plan: &StoredPlan) -> Result<(), StoreError> {
         let waiting = self.certificates.plan((vehicle.0, corridor_no(policy)), plan);
-        waiting.map_err(|e| StoreError::io(&self.part.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.target, e))
     }
 
     /// Adds turns that a portion owns, and the areas of junctions in it. Returns the number of the first turn; the others follow it. Their
@@ -254,7 +260,7 @@ impl Writer {
         facts: &[TurnFacts],
         junctions: &[JunctionArea],
     ) -> Result<u32, StoreError> {
-        let at = |e| StoreError::io(&self.part.path, e);
+        let at = |e| StoreError::io(&self.part.target, e);
         let turns = match &mut self.turns {
             Some(turns) => turns,
             none => none.insert(Turns::create(&self.part.path).map_err(at)?),
@@ -297,7 +303,7 @@ impl Writer {
         if let Some(plan) = plan {
             waiting = waiting.and_then(|()| turns.certificates.plan(set, &plan));
         }
-        waiting.map_err(|e| StoreError::io(&self.part.path, e))
+        waiting.map_err(|e| StoreError::io(&self.part.target, e))
     }
 
     /// Adds to the account of the run.
@@ -307,9 +313,9 @@ impl Writer {
 
     /// Writes what is left, checks the file, and puts it in place of the old one.
     pub fn finish(self, run: &Run) -> Result<(), StoreError> {
-        let path = self.part.path.clone();
+        let path = self.part.target.clone();
         let at = |e| StoreError::io(&path, e);
-        let (mut session, Written { edges, bounds }) = self.growing.finish(&path)?;
+        let (mut session, Written { edges, bounds }) = self.growing.finish(&self.part.path)?;
         let Gathered { mut restrictions, areas, backdrop: things } = self.gathered;
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let (vehicles, account) = (&self.vehicles, &self.account);
@@ -363,7 +369,7 @@ impl Writer {
     /// # Errors
     /// Something cannot be read or stored. The older database is then unchanged.
     pub fn amend(mut self, amendment: &mut Amendment<'_>, run: &Run) -> Result<(), StoreError> {
-        let path = self.part.path.clone();
+        let path = self.part.target.clone();
         self.growing.without_network()?.close()?;
         self.part.copy_target()?;
         let mut session = Session::open(&path, &options(&self.part))?;
@@ -405,7 +411,7 @@ impl FinishTurns<'_> {
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
         let indexes = session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            turns::drop_indexes(c).await
+            if turns.count > MOST_SORTED { Ok(Vec::new()) } else { turns::drop_indexes(c).await }
         })?;
         let bounds = session.fill(async |to| turns::write(to, rows).await)?;
         let around = session.fill(async |to| junctions::insert(to, junctions).await)?;

@@ -483,7 +483,7 @@ fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
     // The second time it is given up while another thread writes its network.
     let mut writer = Database::create(&path, &Settings::default()).unwrap();
     add(&mut writer, &network(20_000), &[]).unwrap();
-    drop(writer.network_complete());
+    drop(writer.network_complete().unwrap());
     left_alone();
 }
 
@@ -496,7 +496,7 @@ fn a_network_that_is_written_beside_certificates_makes_the_same_file() {
     let semi = writer.vehicle(vehicle("EU-SEMI16.5"));
     let train = writer.vehicle(vehicle("eu_semi16_5"));
     add(&mut writer, &network, &[]).unwrap();
-    let mut writer = writer.network_complete();
+    let mut writer = writer.network_complete().unwrap();
     for i in 0..network.edges.len() as u32 {
         for (vehicle, policy, seed) in [(semi, Policy::Lane, 1), (semi, Policy::Direction, 3), (train, Policy::Lane, 2)]
         {
@@ -614,12 +614,12 @@ fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
             let error = (|| {
                 let mut writer = Database::create(&path, &Settings::default())?;
                 add(&mut writer, &network(20_000), &[])?;
-                let writer = if beside { writer.network_complete() } else { writer };
+                let writer = if beside { writer.network_complete()? } else { writer };
                 writer.finish(&run())
             })()
             .unwrap_err();
             assert!(matches!(error, StoreError::Full(_)), "{error}");
-            assert!(error.to_string().contains("a.gpkg") && error.to_string().contains("free some space"), "{error}");
+            assert!(error.to_string().contains("a.gpkg:") && error.to_string().contains("free some space"), "{error}");
             assert!(std::fs::read(&path).unwrap() == before);
             assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
         }

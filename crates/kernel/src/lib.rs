@@ -2,7 +2,7 @@
 //!
 //! [`stet`] decides. [`published`] is the paper's own certificate to the letter and decides nothing.
 
-// For instructions of a processor that is asked first (`stet/lanes.rs`).
+// `stet/lanes.rs` uses instructions that not every processor has. It asks first.
 #![allow(unsafe_code)]
 
 pub mod published;

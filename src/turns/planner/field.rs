@@ -152,7 +152,7 @@ impl Block {
 }
 
 impl Eight {
-    /// Segments by eights, seen from a place. The last one fills what is left.
+    /// Segments by eights, seen from a place. The last segment fills the lanes that are left.
     fn all(segments: &[Segment], from: [f64; 2]) -> Vec<Self> {
         let of = |chunk: &[Segment]| {
             let at = |i: usize| chunk[i.min(chunk.len() - 1)];

@@ -16,8 +16,9 @@ const SIDE_STEP_M: f64 = 1.0;
 /// One in this many moments is looked at first. What they lack beyond [`SURE_M`], metres, other samples along a side hardly make up.
 const FEW: usize = 5;
 const SURE_M: f64 = 0.1;
-/// Least distance between the places looked at where a body goes on, metres, and how much more room than the least is told apart.
+/// Least distance between the places looked at along the front of a body that goes on, metres.
 const FRONT_STEP_M: f64 = 0.4;
+/// More room than the least by this is not measured, metres.
 const SLACK_M: f64 = 0.5;
 /// Moments that refused the last paths. They are looked at first, while the vehicle is still followed: most paths lack room where the
 /// one before lacked it.
@@ -262,7 +263,7 @@ fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut
 struct Side {
     rear: [f64; 2],
     heading: [f64; 2],
-    /// The side had at least this room, metres.
+    /// The side had about this room or more, metres.
     room_m: f64,
 }
 
@@ -287,7 +288,7 @@ impl Side {
         let on = known_m > least_m && behind_m >= 0.0;
         // Places behind this one have been looked at, and lie no farther aside than the ends.
         let (mut s, step_m) =
-            if on { ((length_m + length_m - front_m).min(length_m), FRONT_STEP_M) } else { (0.0, SIDE_STEP_M) };
+            if on { ((length_m + length_m - front_m).clamp(0.0, length_m), FRONT_STEP_M) } else { (0.0, SIDE_STEP_M) };
         let mut room_m = if on { known_m } else { least_m + SLACK_M };
         loop {
             let m = field.distance_m(along(rear, heading, s));
