@@ -150,27 +150,6 @@ pub(super) async fn write(
     Ok(bounds)
 }
 
-/// Drops the indexes of the empty table `turn` (`turn_by_id`, `turn_by_edge`), and returns the statements that make them. An index over all
-/// rows is sorted once. Row by row, each id, which is a hash, would go to another page.
-pub(super) async fn drop_indexes(c: &mut SqliteConnection) -> Sql<Vec<String>> {
-    let sql = "SELECT name, sql FROM sqlite_schema WHERE type = 'index' AND tbl_name = 'turn' AND sql IS NOT NULL ORDER BY rowid";
-    let indexes: Vec<(String, String)> = sqlx::query_as(sql).fetch_all(&mut *c).await?;
-    let mut statements = Vec::new();
-    for (name, statement) in indexes {
-        sqlx::query(AssertSqlSafe(format!("DROP INDEX \"{name}\""))).persistent(false).execute(&mut *c).await?;
-        statements.push(statement);
-    }
-    Ok(statements)
-}
-
-/// Makes the indexes that [`drop_indexes`] dropped.
-pub(super) async fn make_indexes(c: &mut SqliteConnection, statements: Vec<String>) -> Sql<()> {
-    for statement in statements {
-        sqlx::query(AssertSqlSafe(statement)).persistent(false).execute(&mut *c).await?;
-    }
-    Ok(())
-}
-
 /// Registers the turns as a layer.
 pub(super) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
     sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;

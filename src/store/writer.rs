@@ -53,9 +53,6 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// 16 KiB. Larger pages make the look-up of single edges slower.
 const PAGE_BYTES: u32 = 8192;
 
-/// Most turns whose indexes are made when all turns are there: SQLite sorts an index in memory, with some 50 bytes a turn.
-const MOST_SORTED: u32 = 10_000_000;
-
 /// The number of a vehicle in a [`Writer`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VehicleNo(u32);
@@ -409,14 +406,10 @@ impl FinishTurns<'_> {
             Ok((index as u32, record))
         });
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
-        let indexes = session.run(async |c| {
-            sqlx::query("BEGIN").execute(&mut *c).await?;
-            if turns.count > MOST_SORTED { Ok(Vec::new()) } else { turns::drop_indexes(c).await }
-        })?;
+        session.run(async |c| sqlx::query("BEGIN").execute(c).await)?;
         let bounds = session.fill(async |to| turns::write(to, rows).await)?;
         let around = session.fill(async |to| junctions::insert(to, junctions).await)?;
         session.run(async |c| {
-            turns::make_indexes(c, indexes).await?;
             turns::register(c, bounds, &run.finished).await?;
             junctions::register(c, around, &run.finished).await
         })?;
