@@ -170,9 +170,7 @@ impl<'a> Scorer<'a> {
         for moment in 0..moments {
             let units = self.at(moment).zip(sides.chunks_exact_mut(2));
             for ((tube_m, axle, heading, unit), sides) in units {
-                let rear = along(axle, heading, -unit.rear_overhang_m);
-                for (side, half) in sides.iter_mut().zip([0.5 * unit.width_m, -0.5 * unit.width_m]) {
-                    let corner = [rear[0] - half * heading[1], rear[1] + half * heading[0]];
+                for (side, corner) in sides.iter_mut().zip(rear_corners(axle, heading, unit)) {
                     let room_m = side.go_on(field, (corner, heading), length_m(unit), least.0 + tube_m) - tube_m;
                     if room_m < least.0 {
                         least = (room_m, moment);
@@ -240,22 +238,36 @@ fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
 /// Least distance of a unit's sides from the boundary, where it is below `least_m`. Distance changes by no more than
 /// the place does, so a place with much room speaks for its neighbours.
 fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut least_m: f64) -> f64 {
-    let length_m = length_m(unit);
-    let rear = along(axle, heading, -unit.rear_overhang_m);
-    for half in [0.5 * unit.width_m, -0.5 * unit.width_m] {
-        let corner = [rear[0] - half * heading[1], rear[1] + half * heading[0]];
-        let mut s = 0.0;
-        loop {
-            let m = field.distance_m(along(corner, heading, s));
-            let beyond_m = m - least_m;
-            least_m = least_m.min(m);
-            if s >= length_m {
-                break;
-            }
-            s = (s + beyond_m.max(SIDE_STEP_M)).min(length_m);
-        }
+    for corner in rear_corners(axle, heading, unit) {
+        least_m = room_along(field, (corner, heading), [0.0, length_m(unit)], SIDE_STEP_M, least_m);
     }
     least_m
+}
+
+/// The left and the right rear corner of a unit.
+fn rear_corners(axle: [f64; 2], heading: [f64; 2], unit: &Unit) -> [[f64; 2]; 2] {
+    let rear = along(axle, heading, -unit.rear_overhang_m);
+    [0.5, -0.5].map(|share| along(rear, [-heading[1], heading[0]], share * unit.width_m))
+}
+
+/// Least distance of a line from the boundary between two distances from its start, where it is below `least_m`. Places are at least
+/// `step_m` apart.
+fn room_along(
+    field: &mut Field,
+    (start, heading): ([f64; 2], [f64; 2]),
+    [mut s, end]: [f64; 2],
+    step_m: f64,
+    mut least_m: f64,
+) -> f64 {
+    loop {
+        let m = field.distance_m(along(start, heading, s));
+        let beyond_m = m - least_m;
+        least_m = least_m.min(m);
+        if s >= end {
+            return least_m;
+        }
+        s = (s + beyond_m.max(step_m)).min(end);
+    }
 }
 
 /// A side of a body at the last moment.
@@ -287,18 +299,12 @@ impl Side {
         let known_m = self.room_m - rear_aside_m.abs().max(front_aside_m.abs());
         let on = known_m > least_m && behind_m >= 0.0;
         // Places behind this one have been looked at, and lie no farther aside than the ends.
-        let (mut s, step_m) =
-            if on { ((length_m + length_m - front_m).clamp(0.0, length_m), FRONT_STEP_M) } else { (0.0, SIDE_STEP_M) };
-        let mut room_m = if on { known_m } else { least_m + SLACK_M };
-        loop {
-            let m = field.distance_m(along(rear, heading, s));
-            let beyond_m = m - room_m;
-            room_m = room_m.min(m);
-            if s >= length_m {
-                break;
-            }
-            s = (s + beyond_m.max(step_m)).min(length_m);
-        }
+        let room_m = if on {
+            let new = [(length_m + length_m - front_m).clamp(0.0, length_m), length_m];
+            room_along(field, (rear, heading), new, FRONT_STEP_M, known_m)
+        } else {
+            room_along(field, (rear, heading), [0.0, length_m], SIDE_STEP_M, least_m + SLACK_M)
+        };
         *self = Self { rear, heading, room_m };
         room_m
     }
@@ -323,4 +329,35 @@ fn length([x, y]: [f64; 2]) -> f64 {
 
 fn along(p: [f64; 2], u: [f64; 2], m: f64) -> [f64; 2] {
     [p[0] + m * u[0], p[1] + m * u[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::corridor::Area;
+
+    /// A side of 8 m passes a corner that points at it, straight on or turning. Looks at all of it at every moment find no less room.
+    #[test]
+    fn a_side_that_goes_on_has_the_room_of_all_its_places() {
+        let yard = vec![[-30.0, -30.0], [30.0, -30.0], [30.0, 30.0], [-30.0, 30.0]];
+        let island = vec![[0.0, 0.0], [-3.0, 6.0], [3.0, 6.0]];
+        let area = Area { rings: vec![yard, island] };
+        let mut field = Field::new(&area, [0.0, 0.0], 29.0);
+        for (aside_m, turn_rad) in [(0.3, 0.0), (0.9, 0.0), (1.4, 0.01), (2.0, 0.03), (0.6, -0.004)] {
+            let (mut side, mut found_m, mut whole_m, mut truth_m) = (Side::default(), 2.5_f64, 2.5_f64, 2.5_f64);
+            let (mut rear, mut angle) = ([-16.0, -aside_m], 0.0_f64);
+            for _ in 0..18 {
+                let heading = [angle.cos(), angle.sin()];
+                found_m = found_m.min(side.go_on(&mut field, (rear, heading), 8.0, found_m));
+                whole_m = room_along(&mut field, (rear, heading), [0.0, 8.0], SIDE_STEP_M, whole_m);
+                for i in 0..=400 {
+                    truth_m = truth_m.min(field.distance_m(along(rear, heading, 0.02 * f64::from(i))));
+                }
+                rear = along(rear, heading, 1.0);
+                angle += turn_rad;
+            }
+            assert!(truth_m < 2.0, "the side comes near the corner: {truth_m}");
+            assert!(found_m >= truth_m - 0.02 && found_m <= whole_m + 0.12, "{aside_m}: {found_m} {whole_m} {truth_m}");
+        }
+    }
 }
