@@ -13,6 +13,7 @@
 //! | check a database | [`verify::verify`] |
 //! | draw any of it | [`picture`] |
 //! | cancel long work | [`stop::Stop`], which every long function takes |
+//! | bound what one piece of work takes | [`watch::set_patience`] |
 //!
 //! A corridor of one's own, its certificate, and the second opinion on it:
 //!
@@ -81,7 +82,7 @@
 //!
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 
-pub use netcert_base::{speed_profile, stop, vehicle, verdict};
+pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch};
 pub use netcert_kernel::{published, stet};
 
 pub mod account;

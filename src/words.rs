@@ -165,6 +165,7 @@ pub const fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
                 UnknownReason::Cut => "cut",
                 UnknownReason::Limit => "limit",
                 UnknownReason::Failed => "failed",
+                UnknownReason::TookTooLong => "took_too_long",
             };
             ("unknown", reason)
         }

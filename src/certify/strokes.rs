@@ -17,6 +17,7 @@ use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan
 use crate::settings::{Needs, Settings};
 use crate::stet::{Case, Model, Planned, SpanResult, certify_cases};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Rides (a vehicle on a stroke) that are certified together: enough to fill the lanes of the kernel's sweeps with roads of the same
@@ -176,16 +177,20 @@ pub fn make_strokes<E: Send>(
         strokes.iter().filter_map(|&s| Some((s, network.strokes.get(s as usize)?))).collect();
     reporter.begin("certificates", strokes.iter().map(|(_, stroke)| stroke.edges.len() as u64).sum());
     let mut done = 0;
+    let mut before = 0;
     let together = (RIDES / job.models.len().max(1)).max(1);
     for batch in strokes.chunks(together * GROUPS * rayon::current_num_threads()) {
-        let made = batch.par_chunks(together).map(|strokes| {
-            let made = certify_together(job, strokes);
-            keep(&made).map(|()| made)
+        let made = batch.par_chunks(together).enumerate().map(|(group, some)| {
+            let first = (before + group * together) as u64 + 1;
+            let (made, ended) = in_time(job, some, (first, strokes.len() as u64));
+            // What took too long is tried again by the next run.
+            if ended { Ok(made) } else { keep(&made).map(|()| made) }
         });
         for made in made.collect::<Result<Vec<_>, E>>()?.into_iter().flatten() {
             done += made.edges.len() as u64;
             sink(made)?;
         }
+        before += batch.len();
         reporter.advance(done);
     }
     reporter.end();
@@ -194,6 +199,27 @@ pub fn make_strokes<E: Send>(
 
 /// A stroke with its index in the network.
 type Numbered<'n> = (u32, &'n Stroke);
+
+/// The results of some strokes, and whether one of them took too long. The strokes of a group that takes too long are certified one by one,
+/// so that only those that do so by themselves have no certificate.
+fn in_time(job: &Job<'_>, strokes: &[Numbered<'_>], (number, of): (u64, u64)) -> (Vec<StrokeMade>, bool) {
+    let edge = strokes.first().and_then(|(_, stroke)| job.network.stroke_edges.get(stroke.edges.start as usize));
+    let edge = edge.map(|&edge| job.network.edges[edge as usize].id);
+    let what = if strokes.len() == 1 { "stroke" } else { "strokes from" };
+    match watch::guarded(Work { what, number, of, edge }, watch::patience(), || certify_together(job, strokes)) {
+        Ok(made) => (made, false),
+        Err(TookTooLong) => {
+            let alone = |(i, stroke): (usize, &Numbered<'_>)| {
+                if strokes.len() == 1 {
+                    vec![without_corridor(job, *stroke, UnknownReason::TookTooLong)]
+                } else {
+                    in_time(job, std::slice::from_ref(stroke), (number + i as u64, of)).0
+                }
+            };
+            (strokes.iter().enumerate().flat_map(alone).collect(), true)
+        }
+    }
+}
 
 /// The results of some strokes, in their order. No stroke matters to another one.
 fn certify_together(job: &Job<'_>, strokes: &[Numbered<'_>]) -> Vec<StrokeMade> {

@@ -19,6 +19,7 @@ use crate::settings::{Needs, Settings};
 use crate::stet::{Course, Grounds, Model, Options, Plan, SpanResult};
 use crate::turns::{Planned, Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Turns per batch.
@@ -160,7 +161,7 @@ pub fn make_turns<E: Send>(
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
         let made = batch.par_iter().map(|&turn| {
-            let made = certify_turn(job, turn, &strokes, &lines);
+            let made = in_time(job, turn, &strokes, &lines);
             if made.laid_out { keep(&made).map(|()| made) } else { Ok(made) }
         });
         made.collect::<Result<Vec<_>, E>>()?.into_iter().try_for_each(&mut sink)?;
@@ -208,7 +209,14 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
     wanted.retain(|stroke| !lines.contains_key(stroke));
     let policy = job.settings.policy;
     let line = |&stroke: &u32| {
-        let line = StrokeLine::new(job.network, stroke, policy, &job.settings.corridor).map(Arc::new);
+        let work = Work {
+            what: "line of stroke",
+            number: u64::from(stroke) + 1,
+            of: job.network.strokes.len() as u64,
+            edge: None,
+        };
+        let lay = || StrokeLine::new(job.network, stroke, policy, &job.settings.corridor).map(Arc::new);
+        let line = watch::guarded(work, watch::patience(), lay).unwrap_or(Err(UnknownReason::TookTooLong));
         (stroke, (number, line))
     };
     let made: Vec<_> = wanted.par_iter().map(line).collect();
@@ -228,13 +236,32 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
     let barred = |v: &Verdict| {
-        matches!(v, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed))
+        matches!(
+            v,
+            Verdict::Forbidden(_)
+                | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed | UnknownReason::TookTooLong)
+        )
     };
     let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);
     first(|v| matches!(v, Verdict::Forbidden(_)))
         .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))
         .or_else(|| first(|v| matches!(v, Verdict::Unknown(_))))
         .or_else(arcs)
+}
+
+/// The certificates of a turn, which are unknown if they take too long.
+fn in_time(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
+    let edge = job.turns.get(index as usize).map(|turn| job.network.edges[turn.movement.from as usize].id);
+    let work = Work { what: "turn", number: u64::from(index) + 1, of: job.turns.len() as u64, edge };
+    let certify = || certify_turn(job, index, strokes, lines);
+    watch::guarded(work, watch::patience(), certify).unwrap_or_else(|TookTooLong| {
+        let turn = &job.turns[index as usize];
+        let verdict = |vehicle| given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::TookTooLong));
+        let certificates =
+            (0..job.models.len()).map(|vehicle| TurnCertificate::bare(index, verdict(vehicle))).collect();
+        // As one that took no corridors, it is not kept: the next run tries it again.
+        TurnMade { turn: index, laid_out: false, certificates }
+    })
 }
 
 /// One certificate per vehicle.

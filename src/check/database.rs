@@ -153,8 +153,10 @@ impl SetClaim<'_> {
         let Some(edge) = self.network.edges.get(row.edge as usize) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
-        // A machine that failed claims nothing.
-        if row.certificate.verdict == Verdict::Unknown(UnknownReason::Failed) && !row.certificate.has_numbers() {
+        // A machine that failed claims nothing, nor does work that took too long.
+        let nothing =
+            matches!(row.certificate.verdict, Verdict::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong));
+        if nothing && !row.certificate.has_numbers() {
             return Outcome::Confirmed;
         }
         let expected = expected((self.network, edge), self.vehicle, unknown, row);

@@ -101,7 +101,11 @@ impl TurnsClaim<'_> {
             return Some(worse);
         }
         let stops = |verdict: &Verdict| {
-            matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed))
+            matches!(
+                verdict,
+                Verdict::Forbidden(_)
+                    | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed | UnknownReason::TookTooLong)
+            )
         };
         turn.through.iter().map(|&arc| of(arc)).find(stops)
     }
@@ -114,8 +118,10 @@ impl TurnsClaim<'_> {
         if let Some(wrong) = self.misdescribed(turn, row) {
             return (Outcome::Malformed(wrong), 0.0);
         }
-        // A machine that failed claims nothing.
-        if row.certificate.verdict == Verdict::Unknown(UnknownReason::Failed) && !row.certificate.has_numbers() {
+        // A machine that failed claims nothing, nor does work that took too long.
+        let nothing =
+            matches!(row.certificate.verdict, Verdict::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong));
+        if nothing && !row.certificate.has_numbers() {
             return (Outcome::Confirmed, 0.0);
         }
         let made = match self.barred(turn) {

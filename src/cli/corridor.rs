@@ -8,7 +8,6 @@ use clap::Args;
 use netcert::corridor::{self, FileCorridor, corridor_from_file};
 use netcert::explain::{self, Explanation, explain_corridor};
 use netcert::stet::{Certificate, Model, Options};
-use netcert::stop::Stop;
 use netcert::words::Named;
 
 use super::Session;
@@ -75,7 +74,10 @@ impl Corridor {
         let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
         let given = read(&self.file)?;
         let options = Options { max_shift_m: self.max_shift, ..Options::default() };
-        let Some((certificate, why)) = explain_corridor(&given.corridor, &model, &options, &Stop::never())? else {
+        let explained = session
+            .progress
+            .in_time("certificate", |stop| Ok(explain_corridor(&given.corridor, &model, &options, stop)?))?;
+        let Some((certificate, why)) = explained else {
             bail!("{}: the corridor has no station to certify; give two points or more", self.file.display());
         };
         if let Some(path) = &self.out {

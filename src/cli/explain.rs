@@ -91,11 +91,13 @@ impl Explain {
         let model = Model::new(&vehicle)?;
         if let Some(turn) = self.turn(&network, &settings) {
             let measured = database.measured_at(&network, &turn)?;
-            let turn = explain::explain_turn(&network, &turn, &model, &settings, &Stop::never())?;
+            let explain = |stop: &Stop| Ok(explain::explain_turn(&network, &turn, &model, &settings, stop)?);
+            let turn = session.progress.in_time("explanation", explain)?;
             return self.tell_turn(session, &turn, &measured);
         }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
-        let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings, &Stop::never())? else {
+        let explain = |stop: &Stop| Ok(explain::explain_edge(&network, edge, &model, &settings, stop)?);
+        let Some(explanation) = session.progress.in_time("explanation", explain)? else {
             bail!("{}: no edge {edge}", path.display());
         };
         match stored(&mut database, &network, edge, set.as_ref())? {
@@ -131,7 +133,8 @@ impl Explain {
                 writeln!(out, "{json:#}")?;
             }
             Format::Geojson => {
-                let mut json = explain::edge_geojson(&explanation, &Stop::never())?;
+                let mut json =
+                    session.progress.in_time("explanation", |stop| Ok(explain::edge_geojson(&explanation, stop)?))?;
                 json["netcert"]["measurements"] = measured.iter().map(Measurement::json).collect();
                 writeln!(out, "{json}")?;
             }
@@ -169,7 +172,8 @@ impl Explain {
                 writeln!(out, "{json:#}")?;
             }
             Format::Geojson => {
-                let mut json = explain::turn_geojson(turn, &Stop::never())?;
+                let mut json =
+                    session.progress.in_time("explanation", |stop| Ok(explain::turn_geojson(turn, stop)?))?;
                 json["netcert"]["measurements"] = measured.iter().map(Measurement::json).collect();
                 writeln!(out, "{json}")?;
             }

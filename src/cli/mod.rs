@@ -33,6 +33,7 @@ mod routing;
 mod rows;
 mod serve;
 mod sheet;
+mod stage;
 mod stats;
 mod stop;
 mod survey;
@@ -43,7 +44,10 @@ mod values;
 mod vehicles;
 mod verify;
 
+use std::time::Duration;
+
 use clap::{Parser, Subcommand};
+use netcert::watch::{self, Patience};
 
 use clock::Clock;
 use progress::Progress;
@@ -71,6 +75,10 @@ pub(crate) struct Cli {
     /// Number of threads; results do not depend on it [default: one for each processor].
     #[arg(long, global = true, display_order = 901, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// End one stroke, turn or search after so many seconds of processor time; its verdict is `unknown: took_too_long` [default: 600 for
+    /// `ingest`, `certify` and `survey`, 120 for other verbs].
+    #[arg(long, global = true, display_order = 902, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(..=1_000_000))]
+    patience: Option<u64>,
     #[command(subcommand)]
     pub(crate) verb: Verb,
 }
@@ -99,6 +107,26 @@ pub(crate) enum Verb {
     Verify(verify::Verify),
 }
 
+impl Verb {
+    /// How long one stroke, turn or search may take.
+    fn patience(&self) -> Patience {
+        match self {
+            Self::Ingest(_) | Self::Certify(_) | Self::Survey(_) | Self::Verify(_) => Patience::REGION,
+            _ => Patience::ANSWER,
+        }
+    }
+
+    /// What becomes of the work if the program is asked to stop; `None` for a verb that ends by itself.
+    fn when_stopped(&self) -> Option<&'static str> {
+        match self {
+            Self::Serve(_) => None,
+            Self::Ingest(_) => Some("; the same command goes on from there"),
+            Self::Update(_) | Self::Certify(_) | Self::Evidence(_) => Some("; the database is as it was"),
+            _ => Some(""),
+        }
+    }
+}
+
 /// The output for people and the clock, which every verb uses.
 pub(crate) struct Session {
     progress: Progress,
@@ -106,8 +134,14 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Sets the number of threads and reads `SOURCE_DATE_EPOCH`.
+    /// Sets the number of threads and the patience, listens for requests to stop, and reads `SOURCE_DATE_EPOCH`.
     pub(crate) fn begin(cli: &Cli) -> anyhow::Result<Self> {
+        if let Some(then) = cli.verb.when_stopped() {
+            stop::say_when_stopped(then);
+        }
+        let usual = cli.verb.patience();
+        let patience = cli.patience.map(Duration::from_secs).map(|end_after| Patience { end_after, ..usual });
+        watch::set_patience(patience.unwrap_or(usual));
         if let Some(threads) = cli.threads {
             rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
         }

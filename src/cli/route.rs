@@ -129,8 +129,8 @@ impl Route {
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
         let question = Question { places, snap_m: self.snap, alternatives, tries };
         let answer = self.answer(&mut planner, &question, session)?;
-        let stop = Stop::never();
-        let compared = peer.map(|peer| peer.beside(&inputs.driver, &answer, &stop)).transpose()?;
+        let compare = |stop: &Stop| Ok(peer.map(|peer| peer.beside(&inputs.driver, &answer, stop)).transpose()?);
+        let compared = session.progress.in_time("comparison", compare)?;
         self.write_files(&inputs, &answer, session)?;
         let (network, model) = (&inputs.roads.network, &inputs.driver.model);
         let mut out = results();
@@ -152,13 +152,12 @@ impl Route {
 
     /// Certified routes, or else a route under conditions, if one is wanted.
     fn answer(&self, planner: &mut Planner, question: &Question, session: &Session) -> anyhow::Result<Answer> {
-        let stop = Stop::never();
         if self.certified_only {
-            return Ok(planner.answer(question, &stop)?);
+            return session.progress.in_time("route", |stop| Ok(planner.answer(question, stop)?));
         }
         let say =
             || session.progress.say("No route is certified. Looking for one under conditions, which takes longer");
-        Ok(planner.best_answer(question, &stop, say)?)
+        session.progress.in_time("route", |stop| Ok(planner.best_answer(question, stop, say)?))
     }
 
     /// The reference vehicle, if one is to be compared with.

@@ -67,6 +67,7 @@ impl Serve {
         out.flush()?;
         session.progress.say("Ctrl-C ends it");
         server.run(stop());
+        session.progress.say("stopped");
         Ok(())
     }
 }

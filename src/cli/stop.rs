@@ -1,6 +1,8 @@
 //! Reacts to requests to stop: Ctrl-C, and SIGTERM on Unix.
 
-use std::sync::mpsc;
+use std::sync::{Mutex, Once, PoisonError, mpsc};
+
+use super::output::tell;
 
 /// Returns when the program is asked to stop. Never returns if the system offers no such signal.
 pub(super) async fn stop() {
@@ -34,9 +36,27 @@ async fn listen() {
     }
 }
 
-/// When the program is asked to stop, calls `clear` and exits with 130, the status that shells give to Ctrl-C. Returns once it listens, so
-/// that nothing made afterwards is left behind.
+type Clear = Box<dyn FnOnce() + Send>;
+
+/// What is to be cleared, and what to say, when the program is asked to stop.
+static ON_STOP: Mutex<(Vec<Clear>, &str)> = Mutex::new((Vec::new(), ""));
+static LISTENS: Once = Once::new();
+
+/// When the program is asked to stop, calls `clear` too before it exits. Returns once the program listens, so that nothing made afterwards
+/// is left behind.
 pub(super) fn when_stopped(clear: impl FnOnce() + Send + 'static) {
+    ON_STOP.lock().unwrap_or_else(PoisonError::into_inner).0.push(Box::new(clear));
+    LISTENS.call_once(begin);
+}
+
+/// From now on a request to stop ends the program at once, with a line that ends in `then`: what becomes of the work.
+pub(super) fn say_when_stopped(then: &'static str) {
+    ON_STOP.lock().unwrap_or_else(PoisonError::into_inner).1 = then;
+    LISTENS.call_once(begin);
+}
+
+/// Listens on a thread of its own, which exits with 130, the status that shells give to Ctrl-C.
+fn begin() {
     let (listens, ready) = mpsc::channel();
     std::thread::spawn(move || {
         let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
@@ -45,7 +65,12 @@ pub(super) fn when_stopped(clear: impl FnOnce() + Send + 'static) {
             let _ = listens.send(());
             stopped.await;
         });
-        clear();
+        let (clear, then) = {
+            let mut on_stop = ON_STOP.lock().unwrap_or_else(PoisonError::into_inner);
+            (std::mem::take(&mut on_stop.0), on_stop.1)
+        };
+        clear.into_iter().for_each(|clear| clear());
+        tell(&format!("stopped before it finished{then}"));
         std::process::exit(130);
     });
     // An error means that the thread cannot listen; the run goes on without.

@@ -96,7 +96,17 @@ impl Survey {
     }
 
     fn find(&self, inputs: &RoutingInputs, pairs: Option<Vec<Pair>>, session: &Session) -> anyhow::Result<Found> {
-        let (limit, work) = (usize::from(self.limit), (&session.progress as _, &Stop::never()));
+        session.progress.in_time("survey", |stop| self.find_until(inputs, pairs, session, stop))
+    }
+
+    fn find_until(
+        &self,
+        inputs: &RoutingInputs,
+        pairs: Option<Vec<Pair>>,
+        session: &Session,
+        stop: &Stop,
+    ) -> anyhow::Result<Found> {
+        let (limit, work) = (usize::from(self.limit), (&session.progress as _, stop));
         let driver = &inputs.driver;
         if let Some(all) = pairs {
             let pairs = Pairs { all, snap_m: self.snap, tries: usize::from(self.tries) };

@@ -152,6 +152,7 @@ impl Fit {
                 break;
             }
             for window in windows {
+                crate::watch::poll();
                 self.solve(window.clone());
                 self.measure(window);
             }

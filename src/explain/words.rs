@@ -256,6 +256,9 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
         }
         (UnknownReason::Limit, None) => "unknown: a limit is tagged with a value that cannot be read".to_owned(),
         (UnknownReason::Failed, _) => "unknown: the machine that was to certify it failed".to_owned(),
+        (UnknownReason::TookTooLong, _) => {
+            "unknown: the certificate took too long; `netcert certify --patience` gives it more time".to_owned()
+        }
     };
     format!("{said}{on}")
 }

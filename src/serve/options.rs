@@ -105,7 +105,7 @@ impl Default for Limits {
             connections: 256,
             header_time: Duration::from_secs(20),
             connection_time: Duration::from_secs(600),
-            stop_time: Duration::from_secs(10),
+            stop_time: Duration::from_millis(500),
         }
     }
 }

@@ -24,6 +24,7 @@ pub(super) const VERDICTS: &[(u8, Verdict)] = &[
     (32, Verdict::Unknown(UnknownReason::Cut)),
     (33, Verdict::Unknown(UnknownReason::Limit)),
     (34, Verdict::Unknown(UnknownReason::Failed)),
+    (35, Verdict::Unknown(UnknownReason::TookTooLong)),
 ];
 
 /// The number of [`Verdict::Safe`]. The views in `migrations/` use this number.
@@ -95,7 +96,8 @@ mod tests {
             V::Unknown(N::Geometry) => V::Unknown(N::Cut),
             V::Unknown(N::Cut) => V::Unknown(N::Limit),
             V::Unknown(N::Limit) => V::Unknown(N::Failed),
-            V::Unknown(N::Failed) => return None,
+            V::Unknown(N::Failed) => V::Unknown(N::TookTooLong),
+            V::Unknown(N::TookTooLong) => return None,
         })
     }
 

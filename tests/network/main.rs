@@ -15,6 +15,7 @@ mod islands;
 mod junction_areas;
 mod malformed;
 mod maps;
+mod monotone;
 mod needs;
 #[path = "../oracle/mod.rs"]
 mod oracle;

@@ -6,3 +6,4 @@ pub mod speed_profile;
 pub mod stop;
 pub mod vehicle;
 pub mod verdict;
+pub mod watch;

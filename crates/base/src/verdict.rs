@@ -65,4 +65,6 @@ pub enum UnknownReason {
     Limit,
     /// The machine that was to certify it failed.
     Failed,
+    /// The certificate took longer than the program's patience ([`crate::watch`]).
+    TookTooLong,
 }

@@ -2,6 +2,7 @@
 //! asked, and linear between its nodes. Nothing rests on it.
 
 use crate::corridor::Area;
+use crate::watch;
 
 /// Distance between nodes, metres.
 const CELL_M: f64 = 0.25;
@@ -100,6 +101,7 @@ impl Field {
         if !known.is_nan() {
             return known;
         }
+        watch::poll();
         let p = [self.low[0] + i as f64 * CELL_M, self.low[1] + j as f64 * CELL_M];
         let beyond = self.row(j).iter().filter(|x| **x > p[0]).count();
         let Some(block) = &mut self.blocks[at] else { return f32::NAN };

@@ -170,6 +170,7 @@ impl Ascent {
         let mut before = start;
         let Pace { steps, tau_m, momentum } = self.pace;
         for step in 0..steps {
+            netcert_base::watch::poll();
             let tau = tau_m * (TAU_LAST_M / tau_m).powf(step as f64 / (steps - 1) as f64);
             let ahead: Vec<f64> = now.iter().zip(&before).map(|(c, b)| *c + (*c - *b) * momentum).collect();
             self.response.follow(&steer(&ahead, self.response.knots()));

@@ -20,6 +20,7 @@ use super::model::{MAX_UNITS, Model};
 use super::spans;
 use super::track::{Extensions, Track};
 use netcert_base::stop::Stop;
+use netcert_base::watch;
 
 /// Vehicles share a track whose lengths, in steps of this, are the same, metres.
 const LENGTH_STEP_M: f64 = 8.0;
@@ -196,6 +197,7 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
     let mut paths = SteerPaths::new(rides);
     let mut motion = Motion::new(&group, &paths);
     while lanes.iter().any(|lane| !lane.done) {
+        watch::poll();
         if stop.told() {
             return rides.iter().map(|ride| Minima::lost(ride.track.len(), !ride.track.areas.is_empty())).collect();
         }

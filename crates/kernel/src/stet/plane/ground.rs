@@ -1,6 +1,7 @@
 //! The room that an area leaves: distances to its boundary, found through a grid of cells.
 
 use netcert_base::corridor::Area;
+use netcert_base::watch;
 
 /// A place in the plane, metres.
 pub(super) type Point = [f64; 2];
@@ -339,6 +340,7 @@ impl Ground {
         // The parts of the piece and of the step, by their middle and half of their share, and how deep they may be.
         let mut open = vec![([0.5; 2], [0.5; 2], f64::INFINITY)];
         while let Some(([part, moment], [half_part, half_moment], within)) = open.pop() {
+            watch::poll();
             if within <= most {
                 continue;
             }
