@@ -1,6 +1,7 @@
 //! Certificates of a whole network: of its edges, stroke by stroke, and of the turns between them.
 
 mod least;
+mod narrower;
 mod needs;
 mod strokes;
 mod suppose;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::narrower::MeasuredWidths;
 use super::needs::TurnCase;
 use crate::account::AccountRow;
 use crate::network::Network;
@@ -156,15 +157,27 @@ pub fn make_turns<E: Send>(
 ) -> Result<(), E> {
     reporter.begin("turns", turns.len() as u64);
     let strokes = job.network.strokes_of_edges();
+    let measured = MeasuredWidths::find(job.network);
     let mut lines = Lines::default();
     let mut done = 0;
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
+        let lacks = |made: &TurnMade| {
+            made.certificates.iter().any(lacks_room)
+                && measured
+                    .as_ref()
+                    .is_some_and(|measured| measured.concerns(job.network, &strokes, &job.turns[made.turn as usize]))
+        };
         let made = batch.par_iter().map(|&turn| {
             let made = in_time(job, turn, &strokes, &lines);
-            if made.laid_out { keep(&made).map(|()| made) } else { Ok(made) }
+            if made.laid_out && !lacks(&made) { keep(&made).map(|()| made) } else { Ok(made) }
         });
-        made.collect::<Result<Vec<_>, E>>()?.into_iter().try_for_each(&mut sink)?;
+        let mut made = made.collect::<Result<Vec<_>, E>>()?;
+        let again: Vec<&mut TurnMade> = made.iter_mut().filter(|made| made.laid_out && lacks(made)).collect();
+        if let Some(measured) = measured.as_ref().filter(|_| !again.is_empty()) {
+            plan_narrower(job, measured, again, (&strokes, &lines), keep)?;
+        }
+        made.into_iter().try_for_each(&mut sink)?;
         done += batch.len() as u64;
         reporter.advance(done);
     }
@@ -249,6 +262,94 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
         .or_else(arcs)
 }
 
+/// Whether a turn was laid out, and no plan fits.
+fn lacks_room(certificate: &TurnCertificate) -> bool {
+    certificate.path.is_some() && matches!(certificate.conclusion.verdict, Verdict::Unsafe(_))
+}
+
+/// Tries the plans of narrower roads for turns that lack room.
+fn plan_narrower<E: Send>(
+    job: &TurnJob<'_>,
+    measured: &MeasuredWidths,
+    mut again: Vec<&mut TurnMade>,
+    (strokes, lines): (&[u32], &Lines),
+    keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
+) -> Result<(), E> {
+    for network in measured.narrower(job.network) {
+        let narrower = TurnJob { network: &network, ..*job };
+        again.par_iter_mut().filter(|made| made.certificates.iter().any(lacks_room)).for_each(|made| {
+            let work = Work { what: "turn", number: u64::from(made.turn) + 1, of: job.turns.len() as u64, edge: None };
+            // A turn that takes too long keeps what is known of it.
+            let better = watch::guarded(work, watch::patience(), || plan_as_on((job, &narrower), made, strokes, lines));
+            for (vehicle, certificate) in better.unwrap_or_default() {
+                made.certificates[vehicle] = certificate;
+            }
+        });
+    }
+    again.into_par_iter().try_for_each(|made| keep(made))
+}
+
+/// The certificates, by vehicle, of the paths that are safe on a narrower road and safe here.
+fn plan_as_on(
+    (job, narrower): (&TurnJob<'_>, &TurnJob<'_>),
+    made: &TurnMade,
+    strokes: &[u32],
+    lines: &Lines,
+) -> Vec<(usize, TurnCertificate)> {
+    let turn = &job.turns[made.turn as usize];
+    let (policy, params) = (job.settings.policy, &job.settings.turn_params());
+    let here = |edge: u32| line_of(lines, strokes, edge);
+    let met: FxHashSet<u32> = turn
+        .through
+        .iter()
+        .chain([&turn.movement.from, &turn.movement.to])
+        .map(|&edge| strokes[edge as usize])
+        .collect();
+    let laid: FxHashMap<u32, Result<StrokeLine, UnknownReason>> = met
+        .into_iter()
+        .map(|stroke| (stroke, StrokeLine::new(narrower.network, stroke, policy, &job.settings.corridor)))
+        .collect();
+    let there = |edge: u32| match laid.get(&strokes[edge as usize]) {
+        Some(Ok(line)) => Ok(line),
+        Some(Err(reason)) => Err(*reason),
+        None => Err(UnknownReason::Geometry),
+    };
+    let mut better = Vec::new();
+    for reach in [Reach::Short, Reach::Long] {
+        let lacking =
+            |v: &usize| lacks_room(&made.certificates[*v]) && Reach::of(&job.models[*v].vehicle) == Some(reach);
+        let lacking: Vec<usize> = (0..job.models.len()).filter(lacking).collect();
+        let over = (turn.movement, &turn.through[..]);
+        if lacking.is_empty() {
+            continue;
+        }
+        let Ok(narrow) = turn_on(narrower.network, over, &there, policy, params, reach) else { continue };
+        let models: Vec<&Model> = lacking.iter().map(|&v| &job.models[v]).collect();
+        let mut wide = None;
+        for (&v, found) in lacking.iter().zip(best_planned(&narrow, &models, &job.settings.stet)) {
+            let Some(code) = found.filter(|found| found.result.safe()).map(|found| found.path.code) else { continue };
+            let wide = wide.get_or_insert_with(|| turn_on(job.network, over, &here, policy, params, reach));
+            let Ok(wide) = wide else { break };
+            let (mut best, grounds) = (None, Grounds::default());
+            let planned = Planned { code, score_m: 0.0, room_m: 0.0 };
+            let how = (Some(&job.settings.stet), f64::NEG_INFINITY);
+            try_path((wide, &grounds), planned, &job.models[v], how, &mut best);
+            if best.as_ref().is_some_and(|best| best.result.safe()) {
+                better.push((v, certificate(made.turn, best)));
+            }
+        }
+    }
+    better
+}
+
+fn line_of<'l>(lines: &'l Lines, strokes: &[u32], edge: u32) -> Result<&'l StrokeLine, UnknownReason> {
+    match lines.get(&strokes[edge as usize]) {
+        Some((_, Ok(line))) => Ok(line.as_ref()),
+        Some((_, Err(reason))) => Err(*reason),
+        None => Err(UnknownReason::Geometry),
+    }
+}
+
 /// The certificates of a turn, which are unknown if they take too long.
 fn in_time(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
     let edge = job.turns.get(index as usize).map(|turn| job.network.edges[turn.movement.from as usize].id);
@@ -271,11 +372,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
         .collect();
-    let line = |edge: u32| match lines.get(&strokes[edge as usize]) {
-        Some((_, Ok(line))) => Ok(line.as_ref()),
-        Some((_, Err(reason))) => Err(*reason),
-        None => Err(UnknownReason::Geometry),
-    };
+    let line = |edge: u32| line_of(lines, strokes, edge);
     let mut laid_out = false;
     for reach in [Reach::Short, Reach::Long] {
         let live: Vec<usize> = (0..job.models.len())

@@ -10,6 +10,7 @@ mod conditions;
 mod corners;
 mod corridor_extracts;
 mod demo_region;
+mod drawn_widths;
 mod graph_properties;
 mod islands;
 mod junction_areas;

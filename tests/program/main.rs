@@ -23,6 +23,7 @@ mod oracle;
 mod overture;
 mod pages;
 mod paper;
+mod patience;
 mod relative;
 mod resume;
 mod route_cli;

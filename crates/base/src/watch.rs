@@ -134,11 +134,12 @@ thread_local! {
     static CURRENT: RefCell<Vec<Arc<Running>>> = const { RefCell::new(Vec::new()) };
     /// Polls until the clock is read again.
     static UNREAD: Cell<u32> = const { Cell::new(0) };
+    /// How often the clock was read.
+    static READ: Cell<u64> = const { Cell::new(0) };
 }
 
 static ALL: Mutex<Vec<Weak<Running>>> = Mutex::new(Vec::new());
 static IDS: AtomicU64 = AtomicU64::new(0);
-static READ: AtomicU64 = AtomicU64::new(0);
 
 /// Polls for each reading of the clock.
 const POLLS: u32 = 64;
@@ -177,7 +178,7 @@ pub fn poll() {
 
 #[cold]
 fn read() {
-    READ.fetch_add(1, Ordering::Relaxed);
+    READ.set(READ.get() + 1);
     let ends = |running: &Arc<Running>| running.ran(running.patience.end_after).is_some();
     if CURRENT.with_borrow(|current| current.last().is_some_and(ends)) {
         // No panic hook prints this unwinding.
@@ -185,10 +186,10 @@ fn read() {
     }
 }
 
-/// A measure of the work done by this process: about how often [`poll`] was called. It does not depend on the machine's speed.
+/// A measure of the work that this thread has done: about how often it called [`poll`]. It does not depend on the machine's speed.
 #[must_use]
 pub fn counted() -> u64 {
-    READ.load(Ordering::Relaxed) * u64::from(POLLS)
+    READ.get() * u64::from(POLLS)
 }
 
 /// The work of all threads that has run for longer than its [`Patience::name_after`], the oldest first.

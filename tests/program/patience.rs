@@ -1,0 +1,65 @@
+//! Long work is bounded and told: it ends as `unknown: took_too_long`, Ctrl-C ends it at once, and a log shows where it is.
+
+use std::io::Read as _;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::support::program::Place;
+
+#[test]
+fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
+    let place = Place::empty();
+    let hasty = place.netcert("ingest {demo} --vehicle AU-SEMI19 --patience 0").succeeds();
+    let counted = |what: &str| place.netcert("stats --format json").succeeds().out().matches(what).count();
+    assert!(counted("took_too_long") > 0, "{}", hasty.err());
+    place.netcert("query --vehicle AU-SEMI19 --turns --verdict unknown").succeeds().shows("took_too_long");
+    // It claims nothing, so nothing is refuted.
+    place.netcert("verify --db demo.gpkg").succeeds();
+    assert_eq!(place.files(), ["demo.gpkg"]);
+    place.netcert("certify --vehicle AU-SEMI19").succeeds();
+    let patient = Place::empty();
+    patient.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
+    let rows = |place: &Place| {
+        let edges = place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds().out();
+        edges + &place.netcert("query --vehicle AU-SEMI19 --turns --format csv").succeeds().out()
+    };
+    assert!(rows(&place) == rows(&patient), "certified again, they are those of a patient run");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {
+    let place = Place::with_demo();
+    for line in [
+        "ingest {demo} --db other.gpkg --all-vehicles --threads 1",
+        "certify --vehicle AU-SEMI19 EU-SEMI16.5 AU-BDOUBLE26 --threads 1 --needs all",
+        "survey --vehicle AU-ATRIPLE53 --limit 50",
+        "verify --db demo.gpkg --threads 1",
+        "serve --addr 127.0.0.1:0",
+    ] {
+        let mut run = place.command(line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(600));
+        let told = Instant::now();
+        assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+        let code = run.wait().unwrap().code();
+        let took = told.elapsed();
+        let mut err = String::new();
+        run.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        let serves = line.starts_with("serve");
+        assert_eq!(code, Some(if serves { 0 } else { 130 }), "{line}: {err}");
+        assert!(err.lines().last().is_some_and(|line| line.starts_with("stopped")), "{line}: {err}");
+        // A second, and room for a loaded machine.
+        assert!(took < Duration::from_secs(4), "{line}: {took:?}");
+    }
+}
+
+#[test]
+fn a_log_has_a_line_for_each_stage_and_quiet_runs_have_none() {
+    let place = Place::empty();
+    let log = place.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
+    for stage in ["check", "network", "certificates", "turns", "store"] {
+        let of_stage = |line: &str| line.starts_with(stage) && line.ends_with('…');
+        assert!(log.err().lines().any(of_stage), "no line of {stage} in\n{}", log.err());
+    }
+    place.netcert("ingest {demo} --vehicle AU-SEMI19 -q").succeeds().tells_nothing();
+}
