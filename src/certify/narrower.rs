@@ -6,23 +6,27 @@
 
 use std::ops::Range;
 
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 
 use crate::network::Network;
 use crate::osm::facts::{CrossSection, Strip};
 use crate::turns::TurnFacts;
 
-/// How much farther out on each side than the map's strip a measured one may be, metres, widest first. The steps are fixed: the roads that
-/// are tried for a width are tried for every larger one.
-const MORE_M: [f32; 12] = [1.6, 1.2, 0.8, 0.6, 0.4, 0.3, 0.2, 0.1, 0.05, 0.0, -0.1, -0.2];
+/// Steps by which strips are narrower, metres on each side. They count from the map's strip, so the roads that are tried for a width are
+/// tried for every larger one, too.
+const STEP_M: f32 = 0.025;
+/// The narrowest and the widest roads that are tried, in steps from the map's.
+const STEPS: Range<i16> = -8..65;
+/// Every step is tried down to so much less than was measured, metres, where no more than this lacks; farther away every fourth one.
+const NEAR_M: f32 = 0.3;
+const LACKS_M: f64 = 0.5;
+const FAR_STEPS: i16 = 4;
 
-/// The places of a network where a width was measured.
+/// The places of a network where a width was measured: how much farther out a strip is than on the map, metres.
 pub(super) struct MeasuredWidths {
-    /// Edges, by index, and the nodes at their ends.
-    edges: FxHashSet<u32>,
-    nodes: FxHashSet<i64>,
-    /// The most that a strip is farther out than on the map, metres.
-    most_m: f32,
+    /// By the index of the edge, and by the nodes at its ends.
+    edges: FxHashMap<u32, f32>,
+    nodes: FxHashMap<i64, f32>,
 }
 
 impl MeasuredWidths {
@@ -31,45 +35,69 @@ impl MeasuredWidths {
         if network.site.is_empty() {
             return None;
         }
-        let (edges, nodes) = (FxHashSet::default(), FxHashSet::default());
-        let mut all = Self { edges, nodes, most_m: f32::NEG_INFINITY };
+        let mut all = Self { edges: FxHashMap::default(), nodes: FxHashMap::default() };
         for (index, edge) in (0_u32..).zip(&network.edges) {
             let Some(section) = network.site.section(edge) else { continue };
-            all.most_m = all.most_m.max(beyond(&section, &network.mapped_section(edge)));
-            all.edges.insert(index);
-            all.nodes.extend([edge.from_node, edge.to_node]);
+            let more_m = beyond(&section, &network.mapped_section(edge));
+            all.edges.insert(index, more_m);
+            for node in [edge.from_node, edge.to_node] {
+                all.nodes.entry(node).and_modify(|most_m| *most_m = most_m.max(more_m)).or_insert(more_m);
+            }
         }
         (!all.edges.is_empty()).then_some(all)
     }
 
-    /// Whether a turn leads over or past such an edge. `strokes` has the stroke of each edge.
-    pub(super) fn concerns(&self, network: &Network, strokes: &[u32], turn: &TurnFacts) -> bool {
-        let at_node = |edge: u32| {
-            let edge = &network.edges[edge as usize];
-            self.nodes.contains(&edge.from_node) || self.nodes.contains(&edge.to_node)
+    /// The most that a strip is farther out than on the map where a turn leads over or past it, metres. `None` if nothing is measured there.
+    /// `strokes` has the stroke of each edge.
+    pub(super) fn most_m(&self, network: &Network, strokes: &[u32], turn: &TurnFacts) -> Option<f32> {
+        let of_edge = |edge: u32| {
+            let ends = &network.edges[edge as usize];
+            let nodes = [ends.from_node, ends.to_node].into_iter().filter_map(|node| self.nodes.get(&node));
+            let stroke = network.strokes.get(strokes[edge as usize] as usize);
+            let ranges = stroke.map(|stroke| [&stroke.edges, &stroke.approach]).into_iter().flatten();
+            let edges = ranges.flat_map(|range| &network.stroke_edges[range.start as usize..range.end as usize]);
+            nodes.chain(edges.filter_map(|edge| self.edges.get(edge))).copied().reduce(f32::max)
         };
-        let on_stroke = |edge: u32| {
-            let Some(stroke) = network.strokes.get(strokes[edge as usize] as usize) else { return false };
-            let edges = |range: &Range<u32>| &network.stroke_edges[range.start as usize..range.end as usize];
-            edges(&stroke.edges).iter().chain(edges(&stroke.approach)).any(|edge| self.edges.contains(edge))
-        };
-        let mut met = turn.through.iter().chain([&turn.movement.from, &turn.movement.to]).copied();
-        met.any(|edge| at_node(edge) || on_stroke(edge))
+        let met = turn.through.iter().chain([&turn.movement.from, &turn.movement.to]);
+        met.filter_map(|&edge| of_edge(edge)).reduce(f32::max)
+    }
+}
+
+/// A network whose measured strips can be made narrower.
+pub(super) struct Narrower<'n> {
+    as_measured: &'n Network,
+    pub(super) network: Network,
+}
+
+impl<'n> Narrower<'n> {
+    pub(super) fn new(network: &'n Network) -> Self {
+        Self { as_measured: network, network: network.clone() }
     }
 
-    /// The network with narrower measured strips, widest first.
-    pub(super) fn narrower<'n>(&self, network: &'n Network) -> impl Iterator<Item = Network> + use<'n> {
-        let most_m = self.most_m;
-        MORE_M.into_iter().filter(move |more_m| *more_m < most_m).map(move |more_m| {
-            let mut narrower = network.clone();
-            for edge in &network.edges {
-                if let Some(section) = network.site.section(edge) {
-                    narrower.site.set_section(edge, limited(&section, &network.mapped_section(edge), more_m));
-                }
+    /// Makes the measured strips no farther out than those of the map and so many steps.
+    pub(super) fn set(&mut self, step: i16) {
+        for edge in &self.as_measured.edges {
+            if let Some(section) = self.as_measured.site.section(edge) {
+                let limited = limited(&section, &self.as_measured.mapped_section(edge), more_m(step));
+                self.network.site.set_section(edge, limited);
             }
-            narrower
-        })
+        }
     }
+}
+
+/// The steps that are tried, the widest roads first.
+pub(super) fn steps() -> impl Iterator<Item = i16> {
+    STEPS.rev()
+}
+
+/// Whether a step is tried for a turn whose strips are so much farther out than on the map, metres, and that lacks this, metres.
+pub(super) fn tried(step: i16, most_m: f32, lacks_m: f64) -> bool {
+    let less_m = most_m - more_m(step);
+    less_m > 0.0 && (step % FAR_STEPS == 0 || (less_m <= NEAR_M && lacks_m <= LACKS_M))
+}
+
+fn more_m(step: i16) -> f32 {
+    f32::from(step) * STEP_M
 }
 
 /// The section with each strip no farther out than that of the map and so much more.

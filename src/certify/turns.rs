@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::narrower::MeasuredWidths;
+use super::narrower::{self, MeasuredWidths, Narrower};
 use super::needs::TurnCase;
 use crate::account::AccountRow;
 use crate::network::Network;
@@ -162,20 +162,18 @@ pub fn make_turns<E: Send>(
     let mut done = 0;
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
-        let lacks = |made: &TurnMade| {
-            made.certificates.iter().any(lacks_room)
-                && measured
-                    .as_ref()
-                    .is_some_and(|measured| measured.concerns(job.network, &strokes, &job.turns[made.turn as usize]))
+        let measured_m = |made: &TurnMade| {
+            let lacks = made.laid_out && made.certificates.iter().any(lacks_room);
+            measured.as_ref().filter(|_| lacks)?.most_m(job.network, &strokes, &job.turns[made.turn as usize])
         };
         let made = batch.par_iter().map(|&turn| {
             let made = in_time(job, turn, &strokes, &lines);
-            if made.laid_out && !lacks(&made) { keep(&made).map(|()| made) } else { Ok(made) }
+            if made.laid_out && measured_m(&made).is_none() { keep(&made).map(|()| made) } else { Ok(made) }
         });
         let mut made = made.collect::<Result<Vec<_>, E>>()?;
-        let again: Vec<&mut TurnMade> = made.iter_mut().filter(|made| made.laid_out && lacks(made)).collect();
-        if let Some(measured) = measured.as_ref().filter(|_| !again.is_empty()) {
-            plan_narrower(job, measured, again, (&strokes, &lines), keep)?;
+        let again: Vec<_> = made.iter_mut().filter_map(|made| Some((measured_m(made)?, made))).collect();
+        if !again.is_empty() {
+            plan_narrower(job, again, (&strokes, &lines), keep)?;
         }
         made.into_iter().try_for_each(&mut sink)?;
         done += batch.len() as u64;
@@ -267,29 +265,43 @@ fn lacks_room(certificate: &TurnCertificate) -> bool {
     certificate.path.is_some() && matches!(certificate.conclusion.verdict, Verdict::Unsafe(_))
 }
 
-/// Tries the plans of narrower roads for turns that lack room.
+/// What a turn lacks at least for one of the vehicles that do not fit, metres.
+fn lacks_m(made: &TurnMade) -> Option<f64> {
+    let lacking = made.certificates.iter().filter(|certificate| lacks_room(certificate));
+    let lacks = lacking.filter_map(|certificate| certificate.conclusion.measured.map(|measured| -measured.rsc_m));
+    lacks.reduce(f64::min)
+}
+
+/// Tries the plans of narrower roads for turns that lack room, given with how much farther out than on the map their strips are, metres.
 fn plan_narrower<E: Send>(
     job: &TurnJob<'_>,
-    measured: &MeasuredWidths,
-    mut again: Vec<&mut TurnMade>,
+    mut again: Vec<(f32, &mut TurnMade)>,
     (strokes, lines): (&[u32], &Lines),
     keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
 ) -> Result<(), E> {
-    for network in measured.narrower(job.network) {
-        let narrower = TurnJob { network: &network, ..*job };
-        again.par_iter_mut().filter(|made| made.certificates.iter().any(lacks_room)).for_each(|made| {
+    let mut narrower = Narrower::new(job.network);
+    for step in narrower::steps() {
+        let tried = |(most_m, made): &(f32, &mut TurnMade)| {
+            lacks_m(made).is_some_and(|lacks_m| narrower::tried(step, *most_m, lacks_m))
+        };
+        if !again.iter().any(tried) {
+            continue;
+        }
+        narrower.set(step);
+        let there = TurnJob { network: &narrower.network, ..*job };
+        again.par_iter_mut().filter(|turn| tried(turn)).for_each(|(_, made)| {
             let work = Work { what: "turn", number: u64::from(made.turn) + 1, of: job.turns.len() as u64, edge: None };
             // A turn that takes too long keeps what is known of it.
-            let better = watch::guarded(work, watch::patience(), || plan_as_on((job, &narrower), made, strokes, lines));
+            let better = watch::guarded(work, watch::patience(), || plan_as_on((job, &there), made, strokes, lines));
             for (vehicle, certificate) in better.unwrap_or_default() {
                 made.certificates[vehicle] = certificate;
             }
         });
     }
-    again.into_par_iter().try_for_each(|made| keep(made))
+    again.into_par_iter().try_for_each(|(_, made)| keep(made))
 }
 
-/// The certificates, by vehicle, of the paths that are safe on a narrower road and safe here.
+/// The certificates, by vehicle, of the paths that nearly fit on a narrower road and are safe here.
 fn plan_as_on(
     (job, narrower): (&TurnJob<'_>, &TurnJob<'_>),
     made: &TurnMade,
@@ -327,7 +339,11 @@ fn plan_as_on(
         let models: Vec<&Model> = lacking.iter().map(|&v| &job.models[v]).collect();
         let mut wide = None;
         for (&v, found) in lacking.iter().zip(best_planned(&narrow, &models, &job.settings.stet)) {
-            let Some(code) = found.filter(|found| found.result.safe()).map(|found| found.path.code) else { continue };
+            let Some(code) =
+                found.filter(|found| found.result.safe() || found.nearly_fits()).map(|found| found.path.code)
+            else {
+                continue;
+            };
             let wide = wide.get_or_insert_with(|| turn_on(job.network, over, &here, policy, params, reach));
             let Ok(wide) = wide else { break };
             let (mut best, grounds) = (None, Grounds::default());
