@@ -12,7 +12,9 @@ CREATE TABLE section (
 );
 
 -- Distinct sets of limits and access of one direction of a way, as tagged. `unreadable_limits`: names of those that are
--- tagged with a value that could not be read, separated by commas.
+-- tagged with a value that could not be read, separated by commas. `rules`: rules that depend on the vehicle or the time, as
+-- `key=value` lines, one tagged object after the other with an empty line between; each begins with its direction of travel. Where there are
+-- rules, they alone decide on access and limits, and the other columns say what holds for a lorry in general. NULL: the others decide.
 CREATE TABLE legal (
     legal_no INTEGER PRIMARY KEY,
     max_height_m DOUBLE,
@@ -22,7 +24,8 @@ CREATE TABLE legal (
     max_width_m DOUBLE,
     unreadable_limits TEXT,
     hgv TEXT NOT NULL,
-    motor_vehicle TEXT NOT NULL
+    motor_vehicle TEXT NOT NULL,
+    rules TEXT
 );
 
 -- One row per way.
@@ -49,7 +52,8 @@ CREATE TABLE road (
 -- not. Limits are those of the way and of its nodes on this edge together. `min_radius_m` is NULL on a straight and
 -- where no corridor could be laid (then `centreline_deviation_m` is NULL too). `width_source` belongs to
 -- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy
--- vehicles; `cut`: the extract ends on it.
+-- vehicles; `cut`: the extract ends on it. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for
+-- some vehicle.
 CREATE TABLE edge (
     fid INTEGER PRIMARY KEY NOT NULL,
     edge_id INTEGER NOT NULL,
@@ -87,7 +91,9 @@ CREATE TABLE edge (
     road_no INTEGER NOT NULL REFERENCES road (road_no),
     shape_start INTEGER NOT NULL,
     narrowing_start INTEGER NOT NULL,
-    narrowing_end INTEGER NOT NULL
+    narrowing_end INTEGER NOT NULL,
+    rules TEXT,
+    open_when TEXT
 );
 
 -- Places narrower than the cross section; an edge's are narrowing_start < narrowing_no <= narrowing_end. `vertex` counts

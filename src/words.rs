@@ -155,6 +155,10 @@ pub const fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
                 ForbiddenReason::Access => "access",
                 ForbiddenReason::Barrier => "barrier",
                 ForbiddenReason::Restriction => "restriction",
+                ForbiddenReason::Oneway => "oneway",
+                ForbiddenReason::Axles => "axles",
+                ForbiddenReason::Trailers => "trailers",
+                ForbiddenReason::Class => "class",
             };
             ("forbidden", reason)
         }
@@ -166,6 +170,8 @@ pub const fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
                 UnknownReason::Limit => "limit",
                 UnknownReason::Failed => "failed",
                 UnknownReason::TookTooLong => "took_too_long",
+                UnknownReason::Time => "time",
+                UnknownReason::Rule => "rule",
             };
             ("unknown", reason)
         }

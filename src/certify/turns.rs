@@ -250,7 +250,13 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
         matches!(
             v,
             Verdict::Forbidden(_)
-                | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed | UnknownReason::TookTooLong)
+                | Verdict::Unknown(
+                    UnknownReason::Limit
+                        | UnknownReason::Failed
+                        | UnknownReason::TookTooLong
+                        | UnknownReason::Time
+                        | UnknownReason::Rule
+                )
         )
     };
     let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);

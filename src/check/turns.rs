@@ -104,7 +104,13 @@ impl TurnsClaim<'_> {
             matches!(
                 verdict,
                 Verdict::Forbidden(_)
-                    | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed | UnknownReason::TookTooLong)
+                    | Verdict::Unknown(
+                        UnknownReason::Limit
+                            | UnknownReason::Failed
+                            | UnknownReason::TookTooLong
+                            | UnknownReason::Time
+                            | UnknownReason::Rule
+                    )
             )
         };
         turn.through.iter().map(|&arc| of(arc)).find(stops)

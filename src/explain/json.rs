@@ -30,7 +30,7 @@ pub fn json(e: &Explanation) -> Value {
             "width_source": road.width_source.map(WidthSource::name),
         })
     });
-    let conflict = e.conflict.map(
+    let conflict = e.conflict.as_ref().map(
         |c| json!({"tag": c.tag, "allowed": c.allowed, "vehicle_has": c.has, "unit": c.unit, "surveyed": c.surveyed}),
     );
     json!({

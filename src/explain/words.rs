@@ -215,7 +215,14 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
     let Some(c) = &e.conflict else {
         return format!("forbidden: {}{on}", verdict_words(e.verdict).1.replace('_', " "));
     };
+    let by_rule = c.tag.contains('=');
     let said = match (reason, c.allowed, c.has) {
+        (ForbiddenReason::Oneway, ..) => {
+            format!("forbidden: one-way for this vehicle in the other direction ({})", c.tag)
+        }
+        (ForbiddenReason::Hgv | ForbiddenReason::Access | ForbiddenReason::Class, ..) if by_rule => {
+            format!("forbidden: {}", c.tag)
+        }
         (ForbiddenReason::Hgv, ..) => "forbidden: no heavy goods vehicles (hgv=no or its kind)".to_owned(),
         (ForbiddenReason::Access, ..) => {
             "forbidden: no through traffic of motor vehicles (access, vehicle or motor_vehicle = no or private)"
@@ -228,11 +235,19 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
                 ForbiddenReason::Weight => "gross mass",
                 ForbiddenReason::AxleLoad => "heaviest axle load",
                 ForbiddenReason::Length => "length",
+                ForbiddenReason::Axles => "number of axles",
+                ForbiddenReason::Trailers => "number of trailers",
                 _ => "width",
             };
             let measured = if c.surveyed { " (measured)" } else { "" };
-            let (tag, unit) = (c.tag, c.unit);
-            format!("forbidden: {tag} is {allowed} {unit}{measured}, the vehicle's {what} {has:.2} {unit}")
+            let tag = &c.tag;
+            let unit = if c.unit.is_empty() { String::new() } else { format!(" {}", c.unit) };
+            let digits = if c.unit.is_empty() { 0 } else { 2 };
+            let stated = if by_rule { "at most" } else { "is" };
+            let comma = if by_rule { "," } else { "" };
+            format!(
+                "forbidden: {tag}{comma} {stated} {allowed}{unit}{measured}, the vehicle's {what} {has:.digits$}{unit}"
+            )
         }
         _ => format!("forbidden: {}", c.tag),
     };
@@ -251,6 +266,15 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
         (UnknownReason::Cut, _) => {
             "unknown: the extract ends on this edge: what comes before or after is not known".to_owned()
         }
+        (UnknownReason::Limit, Some(c)) if c.tag.contains('=') => {
+            format!("unknown: {} cannot be read, or not be compared with what is known of the vehicle", c.tag)
+        }
+        (UnknownReason::Time, Some(c)) => format!("unknown: closed to the vehicle at some times: {}", c.tag),
+        (UnknownReason::Time, None) => "unknown: closed to the vehicle at some times".to_owned(),
+        (UnknownReason::Rule, Some(c)) => {
+            format!("unknown: a rule that is not understood may exclude the vehicle: {}", c.tag)
+        }
+        (UnknownReason::Rule, None) => "unknown: a rule that is not understood may exclude the vehicle".to_owned(),
         (UnknownReason::Limit, Some(c)) => {
             format!("unknown: {} is tagged with a value that cannot be read", c.tag)
         }

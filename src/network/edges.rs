@@ -105,7 +105,7 @@ where
         for (i, &v) in line.iter().enumerate() {
             let Some(point) = self.vertices.point(v) else { continue };
             barred |= point.barred;
-            limits = Some(limits.map_or(point.legal, |known| known.merge(point.legal)));
+            limits = Some(limits.map_or_else(|| point.legal.clone(), |known| known.merge(&point.legal)));
             if let Some(passage_m) = point.passage_m {
                 part.network.narrowings.push(Narrowing { vertex: i as u32, passage_m });
             }
@@ -119,7 +119,7 @@ where
                 part.account.not_driven += 1;
                 continue;
             }
-            let of_road = road.legal[direction as usize];
+            let of_road = &road.legal[direction as usize];
             let edge = Edge {
                 id: 0,
                 road: part.network.roads.len() as u32,
@@ -128,11 +128,11 @@ where
                 direction,
                 shape: (base + piece.vertices.start) as u32..(base + piece.vertices.end) as u32,
                 narrowings: narrowings.clone(),
-                legal: limits.map_or(of_road, |limits| of_road.merge(limits)),
+                legal: limits.as_ref().map_or_else(|| of_road.clone(), |limits| of_road.merge(limits)),
                 barred,
                 cut: piece.cut,
             };
-            part.account.count_edge(&edge, limits.is_some_and(|limits| limits != Legal::default()));
+            part.account.count_edge(&edge, limits.as_ref().is_some_and(|limits| *limits != Legal::default()));
             part.network.edges.push(edge);
         }
     }
@@ -194,7 +194,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         country: place.country,
         left_hand_traffic: place.left_hand_traffic,
         sections,
-        legal: [facts.legal_forward, facts.legal_backward],
+        legal: [facts.legal_forward.clone(), facts.legal_backward.clone()],
         max_speed_km_h: facts.max_speed_km_h,
     }
 }

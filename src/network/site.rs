@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::{Edge, Network};
 use crate::osm::LonLat;
-use crate::osm::facts::{CrossSection, Direction, Legal, Limit};
+use crate::osm::facts::{CrossSection, Direction, Legal};
 
 /// Two pieces of road that form a corner, in order. A piece is known by its road and by where its shape begins.
 pub(crate) type Pieces = [(u32, u32); 2];
@@ -128,11 +128,7 @@ impl Network {
     #[must_use]
     pub fn legal(&self, edge: &Edge) -> Legal {
         let SiteLimits { height_m, weight_t } = self.site.limits(edge);
-        Legal {
-            max_height: height_m.map_or(edge.legal.max_height, Limit::At),
-            max_weight: weight_t.map_or(edge.legal.max_weight, Limit::At),
-            ..edge.legal
-        }
+        edge.legal.with_limits(height_m, weight_t)
     }
 
     /// The kerb radius that the site has for the corner of two edges at a node, metres. `None` if the site says nothing.

@@ -185,7 +185,7 @@ fn point_facts(
         }
         let v = *same.get(&v).unwrap_or(&v);
         marks[v as usize] |= TAGGED;
-        by_vertex.entry(v).and_modify(|known| *known = both(known, facts)).or_insert(*facts);
+        by_vertex.entry(v).and_modify(|known| *known = both(known, facts)).or_insert_with(|| facts.clone());
     }
     by_vertex
 }
@@ -193,7 +193,7 @@ fn point_facts(
 /// Merges the facts of two tagged nodes at one place: each prohibition and each narrowing counts.
 fn both(a: &PointFacts, b: &PointFacts) -> PointFacts {
     PointFacts {
-        legal: a.legal.merge(b.legal),
+        legal: a.legal.merge(&b.legal),
         passage_m: match (a.passage_m, b.passage_m) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),

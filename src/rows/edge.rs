@@ -136,6 +136,10 @@ pub struct EdgeFacts {
     pub motor_vehicle: Permission,
     pub barred: bool,
     pub cut: bool,
+    /// Rules that depend on the vehicle or the time, as text.
+    pub rules: Option<String>,
+    /// Those that close or limit the edge at some times.
+    pub open_when: Option<String>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }

@@ -22,7 +22,7 @@ impl Database {
                    length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
                    carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
                    max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
-                   barred, cut, geom, maxspeed_kmh FROM edge WHERE edge_id = ?";
+                   barred, cut, geom, maxspeed_kmh, rules, open_when FROM edge WHERE edge_id = ?";
         self.session.run(async |c| {
             let row = sqlx::query(sql).bind(edge_id).fetch_optional(c).await?;
             row.as_ref().map(facts).transpose()
@@ -64,6 +64,8 @@ fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
         motor_vehicle: word(row, 27)?,
         barred: row.try_get(28)?,
         cut: row.try_get(29)?,
+        rules: row.try_get(32)?,
+        open_when: row.try_get(33)?,
         line: line(row, 30, || format!("edge {fid}"))?,
     })
 }

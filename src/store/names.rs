@@ -3,8 +3,9 @@
 
 use crate::osm::facts::Policy;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::words::VerdictKind;
 
-/// Every verdict and its number in the database. Numbers are never reused.
+/// Every verdict and its number in the database. Numbers are never reused. A kind has ten numbers, and ten more from 50 on.
 pub(super) const VERDICTS: &[(u8, Verdict)] = &[
     (SAFE, Verdict::Safe),
     (10, Verdict::Unsafe(UnsafeReason::Width)),
@@ -19,13 +20,25 @@ pub(super) const VERDICTS: &[(u8, Verdict)] = &[
     (26, Verdict::Forbidden(ForbiddenReason::Access)),
     (27, Verdict::Forbidden(ForbiddenReason::Barrier)),
     (28, Verdict::Forbidden(ForbiddenReason::Restriction)),
+    (70, Verdict::Forbidden(ForbiddenReason::Oneway)),
+    (71, Verdict::Forbidden(ForbiddenReason::Axles)),
+    (72, Verdict::Forbidden(ForbiddenReason::Trailers)),
+    (73, Verdict::Forbidden(ForbiddenReason::Class)),
     (30, Verdict::Unknown(UnknownReason::Width)),
     (31, Verdict::Unknown(UnknownReason::Geometry)),
     (32, Verdict::Unknown(UnknownReason::Cut)),
     (33, Verdict::Unknown(UnknownReason::Limit)),
     (34, Verdict::Unknown(UnknownReason::Failed)),
-    (35, Verdict::Unknown(UnknownReason::TookTooLong)),
+    (35, Verdict::Unknown(UnknownReason::Time)),
+    (36, Verdict::Unknown(UnknownReason::Rule)),
+    (37, Verdict::Unknown(UnknownReason::TookTooLong)),
 ];
+
+/// The condition that `column` has a number of a kind.
+pub(super) fn of_kind(column: &str, kind: VerdictKind) -> String {
+    let first = 10 * kind as u8;
+    format!("{column} % 50 BETWEEN {first} AND {}", first + 9)
+}
 
 /// The number of [`Verdict::Safe`]. The views in `migrations/` use this number.
 pub(super) const SAFE: u8 = 0;
@@ -58,7 +71,7 @@ pub(super) fn corridor_no(policy: Policy) -> u8 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::words::{Named as _, VerdictKind, verdict_words};
+    use crate::words::{Named as _, verdict_words};
 
     #[test]
     fn policies_are_numbered_in_their_order() {
@@ -67,11 +80,11 @@ mod tests {
         }
     }
 
-    /// Queries select a kind of verdict by the tens digit of its numbers.
+    /// Queries select a kind of verdict by its tens.
     #[test]
     fn each_kind_of_verdict_has_its_ten() {
         for &(no, verdict) in VERDICTS {
-            assert_eq!(VerdictKind::ALL[usize::from(no / 10)].name(), verdict_words(verdict).0);
+            assert_eq!(VerdictKind::ALL[usize::from(no % 50 / 10)].name(), verdict_words(verdict).0);
         }
     }
 
@@ -91,12 +104,18 @@ mod tests {
             V::Forbidden(F::Hgv) => V::Forbidden(F::Access),
             V::Forbidden(F::Access) => V::Forbidden(F::Barrier),
             V::Forbidden(F::Barrier) => V::Forbidden(F::Restriction),
-            V::Forbidden(F::Restriction) => V::Unknown(N::Width),
+            V::Forbidden(F::Restriction) => V::Forbidden(F::Oneway),
+            V::Forbidden(F::Oneway) => V::Forbidden(F::Axles),
+            V::Forbidden(F::Axles) => V::Forbidden(F::Trailers),
+            V::Forbidden(F::Trailers) => V::Forbidden(F::Class),
+            V::Forbidden(F::Class) => V::Unknown(N::Width),
             V::Unknown(N::Width) => V::Unknown(N::Geometry),
             V::Unknown(N::Geometry) => V::Unknown(N::Cut),
             V::Unknown(N::Cut) => V::Unknown(N::Limit),
             V::Unknown(N::Limit) => V::Unknown(N::Failed),
-            V::Unknown(N::Failed) => V::Unknown(N::TookTooLong),
+            V::Unknown(N::Failed) => V::Unknown(N::Time),
+            V::Unknown(N::Time) => V::Unknown(N::Rule),
+            V::Unknown(N::Rule) => V::Unknown(N::TookTooLong),
             V::Unknown(N::TookTooLong) => return None,
         })
     }

@@ -4,11 +4,12 @@
 use std::ops::Range;
 
 use futures_util::TryStreamExt as _;
+use rustc_hash::FxHashMap;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
 use crate::network::{Areas, Crossings, Edge, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
-use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
+use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
 use crate::words::{Named, class_and_link};
@@ -25,18 +26,19 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// Reads the whole network.
 pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let sections = rows(c, "SELECT * FROM section ORDER BY section_no", |row| section(row, 1)).await?;
-    let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1)).await?;
+    let mut sets = RuleSets::default();
+    let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1, 9, &mut sets)).await?;
     let mut strings = StringPool::default();
     let roads =
         rows(c, "SELECT * FROM road ORDER BY road_no", |row| road(row, &sections, &legals, &mut strings)).await?;
     let mut shapes = Vec::new();
     let edges = "SELECT fid, edge_id, road_no, from_node, to_node, direction, geom, shape_start, narrowing_start, \
                  narrowing_end, barred, cut, max_height_m, max_weight_t, max_axle_load_t, max_length_m, max_width_m, \
-                 unreadable_limits, hgv, motor_vehicle FROM edge ORDER BY fid";
+                 unreadable_limits, hgv, motor_vehicle, rules FROM edge ORDER BY fid";
     let mut expected = 0;
     let edges = rows(c, edges, |row| {
         expected += 1;
-        edge(row, expected, roads.len(), &mut shapes)
+        edge(row, expected, roads.len(), (&mut shapes, &mut sets))
     })
     .await?;
     let narrowings = "SELECT vertex, passage_m FROM narrowing ORDER BY narrowing_no";
@@ -150,7 +152,22 @@ fn section(row: &SqliteRow, column: usize) -> Sql<CrossSection> {
     })
 }
 
-fn legal(row: &SqliteRow, column: usize) -> Sql<Legal> {
+/// Sets of rules by their text, each read once.
+type RuleSets = FxHashMap<String, RuleSet>;
+
+/// The set of rules in a column.
+fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<RuleSet>> {
+    let Some(text) = row.try_get::<Option<&str>, _>(column)? else { return Ok(None) };
+    if let Some(known) = sets.get(text) {
+        return Ok(Some(known.clone()));
+    }
+    let set = RuleSet::from_text(text).ok_or_else(|| content(format!("`{text}` are no rules that netcert writes")))?;
+    sets.insert(text.to_owned(), set.clone());
+    Ok(Some(set))
+}
+
+/// Limits and access in a row: the limits from `column` on, the rules in the column `rules`.
+fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut RuleSets) -> Sql<Legal> {
     let unreadable: Option<&str> = row.try_get(column + 5)?;
     let limit = |at: usize, name: &str| -> Sql<Limit> {
         if unreadable.is_some_and(|names| names.split(',').any(|other| other == name)) {
@@ -166,6 +183,7 @@ fn legal(row: &SqliteRow, column: usize) -> Sql<Legal> {
         max_width: limit(4, "max_width")?,
         hgv: word(row, column + 6)?,
         motor_vehicle: word(row, column + 7)?,
+        rules: rule_set(row, rules, sets)?,
     })
 }
 
@@ -174,7 +192,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
     let (class, link) = class_and_link(highway).ok_or_else(|| content(format!("`{highway}` is no class of road")))?;
     let country: &str = row.try_get(8)?;
     let section = |column| index(row, column, sections.len()).map(|i| sections[i as usize]);
-    let legal = |column| index(row, column, legals.len()).map(|i| legals[i as usize]);
+    let legal = |column| index(row, column, legals.len()).map(|i| legals[i as usize].clone());
     Ok(Road {
         way_id: row.try_get(1)?,
         class,
@@ -194,7 +212,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
 
 /// Reads an edge and puts its positions at their old place in [`Network::shapes`]. Neighbours and opposite directions may
 /// share positions.
-fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>) -> Sql<Edge> {
+fn edge(row: &SqliteRow, expected: i64, roads: usize, (shapes, sets): (&mut Vec<LonLat>, &mut RuleSets)) -> Sql<Edge> {
     let fid: i64 = row.try_get(0)?;
     if fid != expected {
         return Err(content(format!("edge {expected} of the network is missing")));
@@ -223,7 +241,7 @@ fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>) 
         direction,
         shape: start..end as u32,
         narrowings: range(row, 8)?,
-        legal: legal(row, 12)?,
+        legal: legal(row, 12, 20, sets)?,
         barred: row.try_get(10)?,
         cut: row.try_get(11)?,
     })

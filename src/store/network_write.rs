@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use crate::network::Edge;
 use crate::osm::LonLat;
-use crate::osm::facts::{CrossSection, Direction, Legal, Limit, Strip};
+use crate::osm::facts::{CrossSection, Direction, Legal, Limit, RuleSet, Strip};
 use crate::rows::Bounds;
 use crate::words::{Named, highway};
 
@@ -51,7 +51,7 @@ pub(super) struct Roads {
 
 impl Roads {
     pub(super) fn new() -> Self {
-        let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 9));
+        let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 10));
         Self { sections, legals, bulk: Bulk::new("road", 16) }
     }
 
@@ -130,7 +130,7 @@ async fn roads_and_edges(
 ) -> Sql<Written> {
     let mut of_roads = Roads::new();
     let mut current: Option<(u32, RoadRow)> = None;
-    let mut bulk = Bulk::new("edge", 37);
+    let mut bulk = Bulk::new("edge", 39);
     let mut narrowings = Narrowings::new();
     let mut ranges = Ranges::default();
     let mut written = Written { edges: 0, bounds: None };
@@ -206,13 +206,15 @@ pub(super) async fn write_edge(
     add_road_columns(bulk, road, &edge, &section);
     bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()));
     bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()));
-    add_legal(bulk, &edge.legal);
+    add_limits(bulk, &edge.legal);
     bulk.add(edge.barred);
     bulk.add(edge.cut);
     bulk.add(i64::from(road_no) + 1);
     bulk.add(ranges.shape.start);
     bulk.add(ranges.narrowings.start);
     bulk.add(ranges.narrowings.end);
+    bulk.add(edge.legal.rules.as_ref().map(RuleSet::text));
+    bulk.add(edge.legal.open_when());
     bulk.end_row(to).await?;
     Ok(bounds)
 }
@@ -351,8 +353,8 @@ fn limits(legal: &Legal) -> [(Limit, &'static str); 5] {
     ]
 }
 
-/// The bits of limits and access.
-type LegalKey = ([(u8, u32); 5], u8, u8);
+/// The bits of limits and access, and the rules.
+type LegalKey = ([(u8, u32); 5], u8, u8, Option<RuleSet>);
 
 fn legal_key(legal: &Legal) -> LegalKey {
     let key = |limit| match limit {
@@ -360,10 +362,15 @@ fn legal_key(legal: &Legal) -> LegalKey {
         Limit::At(value) => (1, value.to_bits()),
         Limit::Unreadable => (2, 0),
     };
-    (limits(legal).map(|(limit, _)| key(limit)), legal.hgv as u8, legal.motor_vehicle as u8)
+    (limits(legal).map(|(limit, _)| key(limit)), legal.hgv as u8, legal.motor_vehicle as u8, legal.rules.clone())
 }
 
 fn add_legal(bulk: &mut Bulk, legal: &Legal) {
+    add_limits(bulk, legal);
+    bulk.add(legal.rules.as_ref().map(RuleSet::text));
+}
+
+fn add_limits(bulk: &mut Bulk, legal: &Legal) {
     let limits = limits(legal);
     for (limit, _) in limits {
         bulk.add(if let Limit::At(value) = limit { Some(decimal(value)) } else { None });

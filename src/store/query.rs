@@ -16,7 +16,7 @@ use crate::words::{Named, VerdictKind};
 
 use super::database::Database;
 use super::error::StoreError;
-use super::names::{corridor_no, width_columns};
+use super::names::{corridor_no, of_kind, width_columns};
 use super::network_read::{line, word, word_or_none};
 use super::numbers;
 
@@ -154,10 +154,7 @@ fn statement(
     bind(f64::from(vehicle_no))?;
     bind(f64::from(corridor_no(options.policy)))?;
     if let Some(kind) = options.verdict {
-        let first = 10.0 * f64::from(kind as u8); // each kind has ten numbers: see `names::VERDICTS`
-        sql += " AND c.verdict_no BETWEEN ? AND ?";
-        bind(first)?;
-        bind(first + 9.0)?;
+        sql += &format!(" AND {}", of_kind("c.verdict_no", kind));
     }
     if let Some(rsc_m) = options.min_rsc_m {
         sql += " AND c.rsc_mm >= ?";

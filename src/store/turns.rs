@@ -19,7 +19,7 @@ use super::bulk::{Bulk, Takes};
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::junctions;
-use super::names::corridor_no;
+use super::names::{corridor_no, of_kind};
 use super::network_read::{line, verdict, word};
 use super::numbers::{self, centimetres};
 use super::packed::{Packed, need_cm};
@@ -314,8 +314,7 @@ pub(super) fn statement(options: &TurnQuery) -> String {
             CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
             WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)";
     if let Some(kind) = options.verdict {
-        let first = 10 * kind as u8; // each kind has ten numbers: see `names::VERDICTS`
-        sql += &format!(" AND c.verdict_no BETWEEN {first} AND {}", first + 9);
+        sql += &format!(" AND {}", of_kind("c.verdict_no", kind));
     }
     if let Some(rsc_m) = options.min_rsc_m {
         sql += &format!(" AND c.rsc_mm >= {}", rsc_m * 1000.0);

@@ -49,6 +49,8 @@ pub fn vehicle(id: &str, tolerance_m: f64, units: Vec<Unit>) -> Vehicle {
         length_m: front - rear,
         height_m: None,
         gross_mass_t: None,
+        class: None,
+        axles: None,
         axle_load_t: None,
         tracking_tolerance_m: tolerance_m,
         tracking_heading_rad: 1f64.to_radians(),

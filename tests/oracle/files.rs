@@ -53,6 +53,8 @@ fn random_vehicle(number: u64) -> Vehicle {
             length_m: 0.0,
             height_m: None,
             gross_mass_t: None,
+            class: None,
+            axles: None,
             axle_load_t: None,
             tracking_tolerance_m: draw.between(0.0, 0.5),
             tracking_heading_rad: draw.between(0.0, 5.0).to_radians(),

@@ -106,11 +106,17 @@ const reasons: Record<string, string> = {
   "forbidden/access": "No access",
   "forbidden/barrier": "Barrier",
   "forbidden/restriction": "Turn restriction",
+  "forbidden/oneway": "One-way for this vehicle",
+  "forbidden/axles": "Too many axles",
+  "forbidden/trailers": "Too many trailers",
+  "forbidden/class": "Not for this kind of vehicle",
   "unknown/width": "No usable width",
   "unknown/geometry": "Broken geometry",
   "unknown/cut": "Edge of the extract",
   "unknown/limit": "Unreadable limit",
   "unknown/failed": "Machine failed",
+  "unknown/time": "Closed at some times",
+  "unknown/rule": "Rule not understood",
 };
 
 export function reasonWords(verdict: string, reason: string | null | undefined): string {

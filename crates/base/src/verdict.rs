@@ -50,6 +50,14 @@ pub enum ForbiddenReason {
     Barrier,
     /// A turn restriction. Turns only.
     Restriction,
+    /// One-way for this vehicle in the other direction.
+    Oneway,
+    /// `maxaxles`
+    Axles,
+    /// `maxtrailers`, `roadtrain:trailers`
+    Trailers,
+    /// A rule for the vehicle's class: `bus=no`, `lhv=no`, `bdouble=no` …
+    Class,
 }
 
 /// Why there is no verdict.
@@ -61,10 +69,14 @@ pub enum UnknownReason {
     Geometry,
     /// The extract ends on this edge, so the road before or after it is unknown.
     Cut,
-    /// A tagged limit has a value that cannot be read.
+    /// A tagged limit has a value that cannot be read, or that cannot be compared with what is known of the vehicle.
     Limit,
     /// The machine that was to certify it failed.
     Failed,
     /// The certificate took longer than the program's patience ([`crate::watch`]).
     TookTooLong,
+    /// Closed to the vehicle at some times, and the certificate has no clock.
+    Time,
+    /// A rule that is not understood, and that may close the road to the vehicle.
+    Rule,
 }

@@ -26,6 +26,8 @@ pub(crate) fn chain(tolerance_m: f64, units: Vec<Unit>) -> Chain {
         length_m: 16.0,
         height_m: None,
         gross_mass_t: None,
+        class: None,
+        axles: None,
         axle_load_t: None,
         tracking_tolerance_m: tolerance_m,
         tracking_heading_rad: 0.02,

@@ -37,6 +37,8 @@ fn from_row((id, width_m, units): &Row) -> Vehicle {
         length_m: units[0][2] + length,
         height_m: None,
         gross_mass_t: None,
+        class: None,
+        axles: None,
         axle_load_t: None,
         tracking_tolerance_m: 0.15,
         tracking_heading_rad: 3f64.to_radians(),

@@ -38,7 +38,7 @@ pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
     let mut legal = LegalTags::default();
     let mut notes = Notes::default();
     for &(key, value) in tags {
-        let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
+        let head = key.split(':').next().unwrap_or(key);
         if OTHER_LEVELS.contains(&head) && !matches!(value, "no" | "0") {
             return None;
         }
@@ -46,10 +46,10 @@ pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
         if matches!(head, "bus" | "psv") && value == "designated" {
             return None;
         }
-        legal.take(head, suffix, value, &mut notes);
+        legal.take(key, value, &mut notes);
     }
     let open = |direction| {
-        let legal = legal.resolve(direction);
+        let legal = legal.resolve(direction, false);
         legal.motor_vehicle == Permission::Yes && legal.hgv == Permission::Yes
     };
     (open(Direction::Forward) && open(Direction::Backward)).then_some(AreaKind::Road(class))

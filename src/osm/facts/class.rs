@@ -69,8 +69,6 @@ fn oneway_tag(value: &str, notes: &mut Notes) -> Option<OnewayTag> {
 #[derive(Debug, Default)]
 struct Basics<'t> {
     oneway: Option<OnewayTag>,
-    /// `oneway:motor_vehicle` and `oneway:hgv`, which override `oneway`.
-    oneway_motor: Option<OnewayTag>,
     roundabout: bool,
     area: bool,
     service: &'t str,
@@ -83,7 +81,6 @@ impl<'t> Basics<'t> {
     fn take(&mut self, key: &str, value: &'t str, notes: &mut Notes) {
         match key {
             "oneway" => self.oneway = oneway_tag(value, notes),
-            "oneway:motor_vehicle" | "oneway:hgv" => self.oneway_motor = oneway_tag(value, notes).or(self.oneway_motor),
             "junction" => self.roundabout = matches!(value, "roundabout" | "circular"),
             "area" => self.area = value == "yes",
             "service" => self.service = value,
@@ -94,10 +91,9 @@ impl<'t> Basics<'t> {
         }
     }
 
-    fn oneway(&self, class: RoadClass, link: bool) -> OnewayTag {
-        let implied = self.roundabout || (class == RoadClass::Motorway && !link);
-        let default = if implied { OnewayTag::Forward } else { OnewayTag::No };
-        self.oneway_motor.or(self.oneway).unwrap_or(default)
+    /// Whether a road is one-way without a tag.
+    fn implied_oneway(&self, class: RoadClass, link: bool) -> bool {
+        self.roundabout || (class == RoadClass::Motorway && !link)
     }
 }
 
@@ -118,7 +114,7 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     for &(key, value) in tags {
         basics.take(key, value, &mut notes);
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
-        legal.take(head, suffix, value, &mut notes);
+        legal.take(key, value, &mut notes);
         speed.take(head, suffix, value, &mut notes);
         section.take(head, suffix, value, &mut notes);
     }
@@ -138,13 +134,15 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         legal.access.imply_no_motor_vehicles();
     }
 
-    let oneway_tag = basics.oneway(class, link);
-    let oneway = match oneway_tag {
+    let implied = basics.implied_oneway(class, link);
+    let oneway_tag = basics.oneway.unwrap_or(if implied { OnewayTag::Forward } else { OnewayTag::No });
+    let oneway = legal.oneway(implied).unwrap_or(match oneway_tag {
         OnewayTag::Forward => Oneway::Forward,
         OnewayTag::Backward => Oneway::Backward,
         OnewayTag::No | OnewayTag::Reversible | OnewayTag::Alternating => Oneway::No,
-    };
-    let mut legals = [legal.resolve(Direction::Forward), legal.resolve(Direction::Backward)];
+    });
+    legal.note_rules(&mut notes);
+    let mut legals = [Direction::Forward, Direction::Backward].map(|direction| legal.resolve(direction, implied));
     if oneway_tag == OnewayTag::Reversible {
         notes.add(Note::Reversible);
         for legal in &mut legals {

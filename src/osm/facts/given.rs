@@ -8,7 +8,7 @@ use super::section_reader::SectionReader;
 use super::{Legal, Oneway, RoadClass, WayFacts};
 
 /// What such a source says of a road.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct GivenRoad {
     /// Road class.
     pub class: RoadClass,
@@ -39,7 +39,7 @@ impl GivenRoad {
         if let Some(width_m) = self.width_m {
             section.given_width(width_m, notes);
         }
-        let [legal_forward, legal_backward] = self.legal;
+        let [legal_forward, legal_backward] = self.legal.clone();
         WayFacts {
             class: self.class,
             link: self.link,

@@ -1,15 +1,14 @@
-//! Legal limits per direction of travel, including conditional ones, and their comparison with a vehicle.
+//! Plain limits and access per direction of travel, as the columns of an edge have them: what holds for a lorry in general.
 //!
-//! If several tags limit the same quantity, the strictest counts. A condition that depends on time counts as always
-//! fulfilled for numeric limits, and as "not for through traffic" for access.
+//! If several tags limit the same quantity, the strictest counts. What depends on the vehicle or the time stands here as "not for through
+//! traffic" at most; the rules beside it decide ([`super::legal`]).
 
 use crate::osm::facts::access::{Access, is_access_key, permission};
+use crate::osm::facts::legal::RuleTags;
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::{Direction, Legal, Limit, Permission, value};
-use crate::vehicle::Vehicle;
-use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::osm::facts::{Direction, Legal, Limit, Oneway, Permission, value};
 
-/// Tolerance of the comparison: tags have two decimals and limits are `f32`, so 2.55 must not exceed 2.55.
+/// Tolerance of comparisons, as in [`super::legal`].
 const SLACK: f64 = 1e-3;
 
 impl Limit {
@@ -21,53 +20,6 @@ impl Limit {
             (Limit::None, limit) | (limit, Limit::None) => limit,
             (Limit::At(a), Limit::At(b)) => Limit::At(a.min(b)),
         }
-    }
-}
-
-impl Legal {
-    /// Merges two sets of rules: the stricter limit of each kind.
-    #[must_use]
-    pub fn merge(self, other: Legal) -> Legal {
-        Legal {
-            max_height: self.max_height.stricter(other.max_height),
-            max_weight: self.max_weight.stricter(other.max_weight),
-            max_axle_load: self.max_axle_load.stricter(other.max_axle_load),
-            max_length: self.max_length.stricter(other.max_length),
-            max_width: self.max_width.stricter(other.max_width),
-            hgv: self.hgv.max(other.hgv),
-            motor_vehicle: self.motor_vehicle.max(other.motor_vehicle),
-        }
-    }
-
-    /// `Forbidden` if a rule excludes the vehicle, `Unknown(Limit)` if only an unreadable limit stands against it,
-    /// otherwise `None`. Unknown properties of the vehicle (height, masses) are not compared. `Permission::Restricted`
-    /// does not exclude, because a lorry may have its destination here.
-    #[must_use]
-    pub fn forbids(&self, vehicle: &Vehicle) -> Option<Verdict> {
-        if self.motor_vehicle == Permission::No {
-            return Some(Verdict::Forbidden(ForbiddenReason::Access));
-        }
-        if self.hgv == Permission::No {
-            return Some(Verdict::Forbidden(ForbiddenReason::Hgv));
-        }
-        let compared = [
-            (self.max_height, vehicle.height_m, ForbiddenReason::Height),
-            (self.max_weight, vehicle.gross_mass_t, ForbiddenReason::Weight),
-            (self.max_axle_load, vehicle.axle_load_t, ForbiddenReason::AxleLoad),
-            (self.max_length, Some(vehicle.length_m), ForbiddenReason::Length),
-            (self.max_width, Some(vehicle.width_m()), ForbiddenReason::Width),
-        ];
-        let mut unreadable = false;
-        for (limit, size, reason) in compared {
-            match (limit, size) {
-                (Limit::At(most), Some(size)) if size > f64::from(most) + SLACK => {
-                    return Some(Verdict::Forbidden(reason));
-                }
-                (Limit::Unreadable, Some(_)) => unreadable = true,
-                _ => {}
-            }
-        }
-        unreadable.then_some(Verdict::Unknown(UnknownReason::Limit))
     }
 }
 
@@ -161,14 +113,17 @@ impl Kind {
 
 /// Limits and access of one way or node while its tags are read.
 #[derive(Debug, Default)]
-pub(super) struct LegalTags {
+pub(super) struct LegalTags<'t> {
     limits: [Legal; 2],
     pub(super) access: Access,
+    rules: RuleTags<'t>,
 }
 
-impl LegalTags {
-    /// Takes a tag if its key (split at the first colon) concerns limits or access.
-    pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+impl<'t> LegalTags<'t> {
+    /// Takes a tag if its key concerns limits, access or the direction of travel.
+    pub(super) fn take(&mut self, key: &'t str, text: &'t str, notes: &mut Notes) {
+        let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
+        self.rules.take(key, (head, suffix), text);
         let conditional = suffix == "conditional" || suffix.ends_with(":conditional");
         let plain =
             if conditional { suffix.strip_suffix("conditional").unwrap_or("").trim_end_matches(':') } else { suffix };
@@ -191,15 +146,13 @@ impl LegalTags {
                 "forward" => directions[1] = false,
                 "backward" => directions[0] = false,
                 "lanes" => by_lane = true,
-                "physical" | "legal" | "hgv" | "hgv_articulated" | "trailer" | "goods" => {}
-                // For buses, or a remark such as `maxweight:signed=no`.
+                "physical" | "legal" | "hgv" | "hgv_articulated" | "goods" => {}
+                // For others, or a remark such as `maxweight:signed=no`.
                 _ => return,
             }
         }
         if conditional {
-            for (limit, _) in clauses(text) {
-                self.limit(kind, kind.read(limit), directions, notes);
-            }
+            // The rules have it.
         } else if by_lane {
             for limit in text.split('|').filter(|limit| !limit.trim().is_empty()) {
                 self.limit(kind, kind.read(limit), directions, notes);
@@ -220,8 +173,7 @@ impl LegalTags {
         }
     }
 
-    /// `no @ (weight>7.5)` is a weight limit. `no @ hazmat` does not concern dimensions. Any other condition stays
-    /// undecided.
+    /// `no @ (weight>7.5)` is a weight limit. `no @ hazmat` does not concern dimensions. Any other condition is left to the rules.
     fn take_conditional_access(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         let directions = match suffix {
             "" => [true, true],
@@ -237,7 +189,6 @@ impl LegalTags {
             match dimension_condition(condition) {
                 Some((kind, limit)) if value == Permission::No => self.limit(kind, limit, directions, notes),
                 _ if value > Permission::Yes => {
-                    notes.add(Note::UndecidedCondition);
                     self.access.condition(head, directions, value);
                 }
                 // A condition under which access is more lenient has no effect.
@@ -246,11 +197,23 @@ impl LegalTags {
         }
     }
 
-    /// The rules of a direction.
-    pub(super) fn resolve(&self, direction: Direction) -> Legal {
+    /// The limits and access of a direction. `implied_oneway`: the road is one-way without a tag.
+    pub(super) fn resolve(&self, direction: Direction, implied_oneway: bool) -> Legal {
         let index = usize::from(direction == Direction::Backward);
         let (motor_vehicle, hgv) = self.access.resolve(direction);
-        Legal { hgv, motor_vehicle, ..self.limits[index] }
+        let mut legal = Legal { hgv, motor_vehicle, ..self.limits[index].clone() };
+        self.rules.add_to(&mut legal, direction, implied_oneway);
+        legal
+    }
+
+    /// The directions of travel, if tags give them by vehicle or time.
+    pub(super) fn oneway(&self, implied: bool) -> Option<Oneway> {
+        self.rules.oneway(implied)
+    }
+
+    /// Adds remarks on rules.
+    pub(super) fn note_rules(&self, notes: &mut Notes) {
+        self.rules.note(notes);
     }
 }
 

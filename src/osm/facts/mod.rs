@@ -12,6 +12,7 @@ mod given;
 mod kerb_reader;
 mod lanes;
 mod layout;
+mod legal;
 mod limits;
 mod measured;
 mod notes;
@@ -38,6 +39,7 @@ pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
 pub use class::{LEFT_OUT_REASONS, way_facts};
 pub use country::{Countries, CountriesError, Place};
 pub use given::{GivenRoad, given_class};
+pub use legal::{At, Judgement, RuleSet};
 pub use limits::Kind as LimitKind;
 pub use notes::{Note, Notes};
 pub use points::point_facts;
@@ -178,8 +180,8 @@ pub enum Limit {
     Unreadable,
 }
 
-/// Legal limits and access of one direction of travel, as tagged.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Legal limits and access of one direction of travel, as tagged. [`Legal::judge`] says what they mean for a vehicle.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Legal {
     /// Metres.
     pub max_height: Limit,
@@ -195,6 +197,9 @@ pub struct Legal {
     pub hgv: Permission,
     /// Whether motor vehicles may use it at all.
     pub motor_vehicle: Permission,
+    /// What depends on the vehicle's class or on the time. Where there are rules, they alone decide, and the members above say what holds for
+    /// a lorry in general.
+    pub rules: Option<RuleSet>,
 }
 
 /// Meaning of an access tag for a through journey. The stricter value is the greater.
@@ -250,7 +255,7 @@ impl WayFacts {
 }
 
 /// Facts from the tags of a node on a road.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointFacts {
     /// Limits at the node, for both directions.
     pub legal: Legal,

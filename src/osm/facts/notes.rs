@@ -13,7 +13,7 @@ pub enum Note {
     BadLaneWidths,
     /// `placement` outside the documented values. Ignored.
     BadPlacement,
-    /// `oneway` outside the documented values. Ignored.
+    /// `oneway` and its keys by vehicle, outside the documented values. The verdict becomes `unknown` where the road may be one-way.
     BadOneway,
     /// A legal limit that cannot be read. The limit counts as unreadable, and the verdict becomes `unknown`.
     BadLimit,
@@ -25,13 +25,15 @@ pub enum Note {
     NationalSpeed,
     /// Tagged lanes and tagged width imply lanes under 1.8 m or over 6 m.
     WidthContradictsLanes,
-    /// A restriction with an undecidable condition (for example a time of day). It counts as not for through traffic.
-    UndecidedCondition,
-    /// `oneway=reversible`: both directions exist, but not always. It counts as not for through traffic.
+    /// A rule with a condition that is not understood. Where it may close the road, the verdict becomes `unknown`.
+    BadCondition,
+    /// `oneway=reversible`: both directions exist, but not always. The verdict becomes `unknown`.
     Reversible,
+    /// A rule that closes or limits the road at some times. Where it closes the road to a vehicle, the verdict becomes `unknown`.
+    TimedRule,
 }
 
-const NAMES: [(Note, &str); 12] = [
+const NAMES: [(Note, &str); 13] = [
     (Note::BadWidth, "bad_width"),
     (Note::BadLanes, "bad_lanes"),
     (Note::BadLaneWidths, "bad_lane_widths"),
@@ -42,8 +44,9 @@ const NAMES: [(Note, &str); 12] = [
     (Note::BadSpeed, "bad_speed"),
     (Note::NationalSpeed, "national_speed"),
     (Note::WidthContradictsLanes, "width_contradicts_lanes"),
-    (Note::UndecidedCondition, "undecided_condition"),
+    (Note::BadCondition, "bad_condition"),
     (Note::Reversible, "reversible"),
+    (Note::TimedRule, "timed_rule"),
 ];
 
 /// A set of [`Note`]s.

@@ -29,8 +29,41 @@ fn barrier(value: &str) -> Barrier {
     }
 }
 
-/// The facts from a node's tags, or `None` if nothing concerns a lorry. Access tags count only on barriers; elsewhere
-/// they belong to objects beside the road. Limits hold in both directions.
+/// Keys that make a node an object of its own, whose access tags say who may use the object, not the road.
+const OBJECTS: [&str; 23] = [
+    "advertising",
+    "aeroway",
+    "amenity",
+    "building",
+    "craft",
+    "door",
+    "emergency",
+    "entrance",
+    "healthcare",
+    "historic",
+    "information",
+    "landuse",
+    "leisure",
+    "man_made",
+    "natural",
+    "office",
+    "place",
+    "playground",
+    "power",
+    "public_transport",
+    "shop",
+    "sport",
+    "tourism",
+];
+
+/// Whether a tag makes a node an object beside or on the road whose access tags are its own.
+fn is_beside(key: &str, value: &str) -> bool {
+    OBJECTS.contains(&key)
+        || key == "highway" && matches!(value, "bus_stop" | "platform" | "services" | "rest_area" | "elevator")
+}
+
+/// The facts from a node's tags, or `None` if nothing concerns a lorry. Access tags of objects such as a car park's entrance belong to
+/// the object. Limits hold in both directions.
 #[must_use]
 pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
     let get = |wanted: &str| tags.iter().find(|(key, _)| *key == wanted).map(|(_, value)| *value);
@@ -38,15 +71,26 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
     let calmed =
         get("traffic_calming").is_some_and(|v| v.split(';').any(|part| matches!(part.trim(), "choker" | "chicane")));
 
+    let on_road = barrier.is_some() || !tags.iter().any(|(key, value)| is_beside(key, value));
     let mut notes = Notes::default();
     let mut rules = LegalTags::default();
     for &(key, value) in tags {
-        let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
-        if head.starts_with("max") || barrier.is_some() {
-            rules.take(head, suffix, value, &mut notes);
+        let head = key.split(':').next().unwrap_or(key);
+        if matches!(head, "oneway" | "seasonal") {
+            continue;
+        }
+        if head.starts_with("max") || on_road {
+            rules.take(key, value, &mut notes);
+        }
+        // A gate that is closed to cars is closed.
+        if barrier.is_some() && key == "motorcar:conditional" {
+            rules.take("motor_vehicle:conditional", value, &mut notes);
         }
     }
-    let mut legal = rules.resolve(Direction::Forward).merge(rules.resolve(Direction::Backward));
+    let mut legal = rules.resolve(Direction::Forward, false);
+    if tags.iter().any(|(key, _)| key.ends_with("ward") || key.contains("ward:")) {
+        legal = legal.merge(&rules.resolve(Direction::Backward, false));
+    }
     if barrier == Some(Barrier::Height) && legal.max_height == Limit::None {
         legal.max_height = Limit::Unreadable;
     }

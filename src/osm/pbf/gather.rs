@@ -233,7 +233,7 @@ impl NodeGatherer {
                 self.points.remove(&hit.index);
             }
             if let Some((_, facts)) = points.next_if(|(of, _)| *of as usize == number) {
-                self.points.insert(hit.index, *facts);
+                self.points.insert(hit.index, facts.clone());
             }
         }
     }

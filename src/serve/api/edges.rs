@@ -59,6 +59,8 @@ fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
     legal.insert("hgv".to_owned(), json!(e.hgv.name()));
     legal.insert("motor_vehicle".to_owned(), json!(e.motor_vehicle.name()));
     legal.insert("barred".to_owned(), json!(e.barred));
+    legal.insert("rules".to_owned(), json!(e.rules));
+    legal.insert("open_when".to_owned(), json!(e.open_when));
     let members = json!({
         "edge_id": e.edge_id.to_string(),
         "feature_id": e.edge + 1,

@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use super::class::Classes;
 use super::collide::{self, Clash};
 use super::definition::{VehicleDefinition, closure_m};
 use super::{Unit, Vehicle};
@@ -122,6 +123,15 @@ impl Check<'_> {
         self.text(None, "region", &v.region, MAX_ID_CHARS);
         self.text(None, "source", &v.source, MAX_SOURCE_CHARS);
         self.range(None, "length_m", v.length_m, 0.2, 200.0);
+        if let Some(class) = &v.class
+            && Classes::builtin().get(class).is_none()
+        {
+            let known: Vec<&str> = Classes::builtin().all().iter().map(|class| class.id.as_str()).collect();
+            self.fault(None, "class", format!("{:?} is none of {}", shown(class), known.join(", ")));
+        }
+        if let Some(axles) = v.axles {
+            self.range(None, "axles", f64::from(axles), v.units.len() as f64 + 1.0, 100.0);
+        }
         for (field, value, least, most) in [
             ("height_m", v.height_m, 0.1, 20.0),
             ("gross_mass_t", v.gross_mass_t, 0.01, 5000.0),

@@ -19,6 +19,12 @@ pub struct VehicleDefinition {
     /// Region code. Default: empty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
+    /// Class of `data/classes.toml`. Default: the one of the units, which no rule opens a road for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+    /// Number of axles. Default: unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axles: Option<u32>,
     /// Overall length. It is checked against the units. Default: their sum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
@@ -85,6 +91,8 @@ impl VehicleDefinition {
             id: self.id.clone(),
             name: self.name.clone().unwrap_or_else(|| self.id.clone()),
             region: self.region.clone().unwrap_or_default(),
+            class: self.class.clone(),
+            axles: self.axles,
             length_m: self.length_m.unwrap_or_else(|| closure_m(&units)),
             height_m: self.height_m,
             gross_mass_t: self.gross_mass_t,
@@ -137,6 +145,8 @@ impl Vehicle {
             id: self.id.clone(),
             name: Some(self.name.clone()),
             region: Some(self.region.clone()),
+            class: self.class.clone(),
+            axles: self.axles,
             length_m: Some(self.length_m),
             height_m: self.height_m,
             gross_mass_t: self.gross_mass_t,

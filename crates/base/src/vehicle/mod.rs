@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `definition` | a vehicle in the file's units, as TOML and JSON write it; conversion from and to [`Vehicle`] |
 //! | `defaults` | default values of fields that a definition leaves out, and their reasons |
+//! | `class` | which rules of the road mean a vehicle; trailers and axles |
 //! | `check` | the bounds of a definition, as faults with a place |
 //! | `collide` | bodies that would overlap, straight or turned |
 //! | `file` | TOML text → vehicles, or every fault with its line |
@@ -11,6 +12,7 @@
 
 mod catalogue;
 mod check;
+mod class;
 mod collide;
 mod defaults;
 mod definition;
@@ -23,6 +25,7 @@ use serde::{Deserialize, Serialize};
 
 pub use catalogue::{Catalogue, VehicleError};
 pub use check::Fault;
+pub use class::{Class, Classes, EVERYBODY, Member};
 pub use definition::{UnitDefinition, VehicleDefinition};
 pub use regions::{Region, Regions};
 
@@ -56,6 +59,10 @@ pub struct Vehicle {
     pub name: String,
     /// Region code (`AU`, `EU`, `US`, `CA`, `indoor`, `airside`), or empty.
     pub region: String,
+    /// Its class of `data/classes.toml`. `None`: the one of its units, see [`Vehicle::class`].
+    pub class: Option<String>,
+    /// Number of axles, if known.
+    pub axles: Option<u32>,
     /// Overall length, metres.
     pub length_m: f64,
     /// Height, metres, if known.

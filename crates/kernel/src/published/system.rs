@@ -54,6 +54,8 @@ impl System {
             length_m: self.length_m + self.trailers as f64 * self.link_m,
             height_m: None,
             gross_mass_t: None,
+            class: None,
+            axles: None,
             axle_load_t: None,
             tracking_tolerance_m: 0.0,
             tracking_heading_rad: 0.0,

@@ -67,6 +67,8 @@ fn lorry() -> Vehicle {
         length_m: 16.5,
         height_m: Some(4.0),
         gross_mass_t: Some(40.0),
+        class: None,
+        axles: None,
         axle_load_t: None,
         tracking_tolerance_m: 0.1,
         tracking_heading_rad: 0.05,

@@ -1,0 +1,155 @@
+//! The times of a condition, in the grammar of opening hours.
+
+use std::fmt;
+use std::sync::Arc;
+
+use jiff::civil::DateTime;
+use opening_hours::{OpeningHours, RuleKind};
+
+use super::condition::Truth;
+use super::subject::At;
+
+/// Times at which a condition holds.
+#[derive(Clone)]
+pub(crate) struct Hours {
+    text: String,
+    /// `None`: times that only people understand.
+    parsed: Option<Arc<OpeningHours>>,
+    /// Whether it asks for holidays or for the sun, which depend on the place.
+    local: bool,
+}
+
+impl fmt::Debug for Hours {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Hours({:?})", self.text)
+    }
+}
+
+/// Words of which times consist, beside numbers.
+const WORDS: [&str; 44] = [
+    "mo", "tu", "we", "th", "fr", "sa", "su", "mon", "tue", "wed", "thu", "fri", "sat", "sun", "jan", "feb", "mar",
+    "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec", "ph", "sh", "off", "open", "closed", "sunrise",
+    "sunset", "dawn", "dusk", "easter", "week", "weekdays", "weekend", "am", "pm", "h", "hrs", "uhr",
+];
+
+/// Full names of months and weekdays are cut to these lengths.
+const NAMES: [&str; 19] = [
+    "january",
+    "february",
+    "march",
+    "april",
+    "june",
+    "july",
+    "august",
+    "september",
+    "october",
+    "november",
+    "december",
+    "monday",
+    "tuesday",
+    "wednesday",
+    "thursday",
+    "friday",
+    "saturday",
+    "sunday",
+    "sept",
+];
+
+impl Hours {
+    /// The times of a text. `None` if it speaks of no time.
+    pub(crate) fn read(text: &str) -> Option<Self> {
+        let text = text.trim();
+        // A bare number is no time, and a word in quotes is a remark.
+        if text.contains(['"', '<', '>', '=', '@']) || !text.contains(|c: char| c.is_ascii_digit() || c.is_alphabetic())
+        {
+            return None;
+        }
+        let mut words = text.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).peekable();
+        let known = |word: &str| {
+            let word = word.to_ascii_lowercase();
+            WORDS.contains(&word.as_str()) || NAMES.contains(&word.as_str())
+        };
+        let mut speaks_of_time = text.contains(':') || text == "24/7";
+        if words.peek().is_none() && !speaks_of_time {
+            return None;
+        }
+        for word in words {
+            if !known(word) {
+                return None;
+            }
+            speaks_of_time |= !matches!(word.to_ascii_lowercase().as_str(), "off" | "open" | "closed" | "h");
+        }
+        if !speaks_of_time {
+            return None;
+        }
+        let parsed = parse(text).or_else(|| parse(&shortened(text)));
+        let lower = text.to_ascii_lowercase();
+        let local = ["ph", "sh", "sunrise", "sunset", "dawn", "dusk"]
+            .iter()
+            .any(|word| lower.split(|c: char| !c.is_alphabetic()).any(|other| other == *word));
+        Some(Self { text: text.to_owned(), parsed: parsed.map(Arc::new), local })
+    }
+
+    /// Whether it holds at all times, or at none, if it is so plain.
+    pub(crate) fn always(&self) -> Option<bool> {
+        let parsed = self.parsed.as_ref()?;
+        let expression = parsed.get_expression();
+        let kind = expression.is_constant().then(|| expression.rules.last().map(|rule| rule.kind))??;
+        match kind {
+            RuleKind::Open => Some(true),
+            RuleKind::Closed => Some(false),
+            RuleKind::Unknown => None,
+        }
+    }
+
+    /// When it holds.
+    pub(crate) fn truth(&self, at: At) -> Truth {
+        let of = |holds| if holds { Truth::Always } else { Truth::Never };
+        if let Some(always) = self.always() {
+            return of(always);
+        }
+        match (at, &self.parsed) {
+            (At::Time(time), Some(parsed)) if !self.local => match naive(time).map(|time| parsed.state(time).0) {
+                Some(RuleKind::Open) => of(true),
+                Some(RuleKind::Closed) => of(false),
+                Some(RuleKind::Unknown) | None => Truth::Sometimes,
+            },
+            _ => Truth::Sometimes,
+        }
+    }
+}
+
+fn parse(text: &str) -> Option<OpeningHours> {
+    text.parse().ok()
+}
+
+/// The text with short names, and with holidays as a rule of their own.
+fn shortened(text: &str) -> String {
+    let mut short = String::with_capacity(text.len());
+    let mut word = String::new();
+    for c in text.chars().chain(std::iter::once(' ')) {
+        if c.is_alphabetic() {
+            word.push(c);
+            continue;
+        }
+        let lower = word.to_ascii_lowercase();
+        if NAMES.contains(&lower.as_str()) {
+            let weekday = lower.ends_with("day");
+            short.push_str(word.get(..if weekday { 2 } else { 3 }).unwrap_or(&word));
+        } else {
+            short.push_str(&word);
+        }
+        word.clear();
+        short.push(c);
+    }
+    short.trim().replace(", ", ",").replace(",PH", "; PH").replace(",SH", "; SH")
+}
+
+fn naive(time: DateTime) -> Option<chrono::NaiveDateTime> {
+    let date = chrono::NaiveDate::from_ymd_opt(
+        time.year().into(),
+        time.month().try_into().ok()?,
+        time.day().try_into().ok()?,
+    )?;
+    date.and_hms_opt(time.hour().try_into().ok()?, time.minute().try_into().ok()?, time.second().try_into().ok()?)
+}

@@ -1,0 +1,24 @@
+//! For whom and when a rule is judged.
+
+use jiff::civil::DateTime;
+
+use crate::vehicle::{Class, Vehicle};
+
+/// The time for which rules are judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum At {
+    /// Whenever: what is closed at some time is not open.
+    #[default]
+    Always,
+    /// Local time of the place.
+    Time(DateTime),
+}
+
+/// Who drives, and when.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Subject<'v> {
+    /// `None`: any vehicle of the class.
+    pub(crate) vehicle: Option<&'v Vehicle>,
+    pub(crate) class: &'v Class,
+    pub(crate) at: At,
+}
