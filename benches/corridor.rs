@@ -67,7 +67,7 @@ fn road(section: CrossSection) -> Road {
         country: *b"DE",
         left_hand_traffic: false,
         sections: [section; 2],
-        legal: [Legal::default(); 2],
+        legal: Default::default(),
         max_speed_km_h: [None; 2],
     }
 }

@@ -48,7 +48,7 @@ pub(crate) fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> 
             country: *b"DE",
             left_hand_traffic: false,
             sections: [*section; 2],
-            legal: [Legal::default(); 2],
+            legal: Default::default(),
             max_speed_km_h: [None; 2],
         });
         n.edges.push(Edge {

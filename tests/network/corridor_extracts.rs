@@ -59,7 +59,7 @@ fn road(way_id: i64, section: CrossSection) -> Road {
         country: *b"AD",
         left_hand_traffic: false,
         sections: [section; 2],
-        legal: [Legal::default(); 2],
+        legal: Default::default(),
         max_speed_km_h: [None; 2],
     }
 }

@@ -328,7 +328,7 @@ fn a_barrier_bars_every_edge_that_touches_it() {
     )
     .way("ABCD", ROAD)
     .way("BE", ROAD);
-    let (_, account) = check(&map.clone().point('C', bollard), "AB BA BD! DB! BE EB", "ABD DBA BE EB");
+    let (_, account) = check(&map.clone().point('C', bollard.clone()), "AB BA BD! DB! BE EB", "ABD DBA BE EB");
     assert_eq!(account.barred_edges, 2);
     check(&map.point('B', bollard), "AB! BA! BD! DB! BE! EB!", "ABD DBA BE EB");
 }

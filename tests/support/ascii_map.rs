@@ -119,7 +119,7 @@ impl AsciiMap {
         let places = ids.iter().map(|&id| self.place(id)).collect();
         extract.nodes = NodeTable { ids, places };
         self.add_areas(&mut extract);
-        extract.points = self.points.iter().map(|&(node, facts)| (id_of(node), facts)).collect();
+        extract.points = self.points.iter().map(|(node, facts)| (id_of(*node), facts.clone())).collect();
         extract.points.sort_by_key(|point| point.0);
         extract.restrictions.clone_from(&self.restrictions);
         extract

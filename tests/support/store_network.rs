@@ -6,7 +6,8 @@ use std::num::NonZeroU8;
 use netcert::network::{Area, Areas, Edge, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{
-    AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
+    AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, RuleSet, Strip,
+    WidthSource,
 };
 use netcert::rows::{Conclusion, EdgeCertificate, Measured};
 use netcert::stet::Side;
@@ -146,6 +147,9 @@ fn legal(k: u32) -> Legal {
         max_width: limit(4, 2.3),
         hgv: permission(k / 5),
         motor_vehicle: permission(k / 7),
+        rules: (k % 11 == 3)
+            .then(|| "forward\nhgv:conditional=no @ (22:00-06:00)\nmaxaxles=4\n\nforward\nhgv=no")
+            .and_then(RuleSet::from_text),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers with units as they stand in tags, in metres, tonnes and km/h unless stated otherwise.
 //!
-//! A result is finite and greater than zero, or `None`. Signs, exponents, ranges, lists, comma decimals and words are
-//! not numbers here. Units follow the wiki pages Key:width, Key:maxheight, Key:maxweight,
+//! A result is finite and greater than zero, or `None`. Signs, exponents, ranges, lists and words are not numbers here. A comma is a decimal
+//! one, unless three digits follow: those may be thousands, and then nobody knows. An unknown unit is not known. Units follow the wiki pages Key:width, Key:maxheight, Key:maxweight,
 //! Key:maxspeed.
 
 use std::num::NonZeroU8;
@@ -14,6 +14,7 @@ const MILE_M: f64 = 1609.344;
 const POUND_T: f64 = 0.000_453_592_37;
 const SHORT_TON_T: f64 = 0.907_184_74;
 const LONG_TON_T: f64 = 1.016_046_908_8;
+const THOUSAND_POUNDS_T: f64 = 0.453_592_37;
 const MILE_KM: f64 = MILE_M / 1000.0;
 const NAUTICAL_MILE_KM: f64 = 1.852;
 
@@ -29,14 +30,20 @@ const GREATEST: f64 = 100_000.0;
 /// Most lanes. A toll plaza may have this many in one direction.
 pub(super) const MOST_LANES: u8 = 16;
 
-/// Digits with at most one dot at the start of `text`, and the rest of `text`.
+/// Digits with at most one dot or decimal comma at the start of `text`, and the rest of `text`.
 fn number(text: &str) -> Option<(f64, &str)> {
-    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.' && c != ',').unwrap_or(text.len());
     let (digits, rest) = text.split_at(end);
-    if !digits.starts_with(|c: char| c.is_ascii_digit()) || digits.ends_with('.') {
+    if !digits.starts_with(|c: char| c.is_ascii_digit()) || digits.ends_with(['.', ',']) {
         return None;
     }
-    Some((digits.parse().ok()?, rest.trim_start()))
+    let rest = rest.trim_start();
+    match digits.split_once(',') {
+        None => Some((digits.parse().ok()?, rest)),
+        // `12,000` is twelve or twelve thousand.
+        Some((_, decimals)) if decimals.len() == 3 => None,
+        Some((whole, decimals)) => Some((format!("{whole}.{decimals}").parse().ok()?, rest)),
+    }
 }
 
 fn usable(value: f64) -> Option<f32> {
@@ -49,36 +56,52 @@ fn inches(text: &str) -> Option<f64> {
         return Some(0.0);
     }
     let (value, unit) = number(text)?;
-    (matches!(unit, "" | "\"" | "''" | "in" | "inch" | "inches") && value < 12.0).then_some(value)
+    (matches!(unit, "" | "\"" | "''" | "″" | "”" | "in" | "in." | "inch" | "inches") && value < 12.0).then_some(value)
 }
 
-/// A length in metres: `3.5`, `3.5 m`, `350 cm`, `0.6 mi`, `16'3"`, `12 ft 6 in`.
+/// Centimetres after metres: empty, or `80 cm`.
+fn centimetres(text: &str) -> Option<f64> {
+    if text.is_empty() {
+        return Some(0.0);
+    }
+    let (value, unit) = number(text)?;
+    (matches!(unit, "cm" | "см") && value < 100.0).then_some(value)
+}
+
+/// A length in metres: `3.5`, `3,5 m`, `350 cm`, `3 m 80 cm`, `0.6 mi`, `16'3"`, `12'6`, `11'-8"`, `12 ft 6 in`.
 #[must_use]
 pub fn metres(text: &str) -> Option<f32> {
     let (value, unit) = number(text.trim())?;
     let length = match unit {
-        "" | "m" | "metre" | "metres" | "meter" | "meters" => value,
-        "cm" => value / 100.0,
-        "mm" => value / 1000.0,
-        "km" => value * 1000.0,
+        "" | "m" | "m." | "м" | "mt" | "mtr" | "metre" | "metres" | "meter" | "meters" => value,
+        "cm" | "см" => value / 100.0,
+        "mm" | "мм" => value / 1000.0,
+        "km" | "км" => value * 1000.0,
         "mi" => value * MILE_M,
-        "\"" | "''" | "in" | "inch" | "inches" => value * INCH_M,
+        "\"" | "''" | "″" | "”" | "in" | "in." | "inch" | "inches" => value * INCH_M,
         _ => {
-            let rest = ["'", "feet", "foot", "ft"].iter().find_map(|foot| unit.strip_prefix(foot))?;
-            value * FOOT_M + inches(rest.trim_start())? * INCH_M
+            if let Some(rest) = unit.strip_prefix("m ") {
+                value + centimetres(rest.trim_start())? / 100.0
+            } else {
+                let feet = ["'", "′", "’", "feet", "foot", "ft.", "ft"];
+                let rest = feet.iter().find_map(|foot| unit.strip_prefix(foot))?.trim_start();
+                value * FOOT_M + inches(rest.strip_prefix('-').unwrap_or(rest).trim_start())? * INCH_M
+            }
         }
     };
     usable(length)
 }
 
-/// A mass in tonnes: `7.5`, `7.5 t`, `3500 kg`, `16000 lbs`, `10 st` (short tons), `10 lt` (long tons).
+/// A mass in tonnes: `7.5`, `7,5 t`, `3500 kg`, `16000 lbs`, `10 st` (short tons), `10 lt` (long tons), `27 kips`. `tons` may be short, long or
+/// metric ones and are not known.
 #[must_use]
 pub fn tonnes(text: &str) -> Option<f32> {
     let (value, unit) = number(text.trim())?;
     let factor = match unit {
-        "" | "t" | "tonne" | "tonnes" => 1.0,
-        "kg" => 0.001,
-        "lb" | "lbs" => POUND_T,
+        "" | "t" | "t." | "т" | "mt" | "tonne" | "tonnes" => 1.0,
+        "kg" | "kgs" | "кг" => 0.001,
+        "lb" | "lbs" | "lb." | "lbs." | "pounds" => POUND_T,
+        "kip" | "kips" => THOUSAND_POUNDS_T,
         "st" => SHORT_TON_T,
         "lt" => LONG_TON_T,
         _ => return None,
@@ -86,17 +109,20 @@ pub fn tonnes(text: &str) -> Option<f32> {
     usable(value * factor)
 }
 
-/// A legal limit. A value above `greatest` probably lacks its unit (`maxweight=7500`) and is unreadable, because
+/// A legal limit. Of a list, the smallest value counts, and all have to be readable. A value above `greatest` probably lacks its unit (`maxweight=7500`) and is unreadable, because
 /// reading it as it stands would allow what may be forbidden. `below_default` and `unknown` state that there is a
 /// limit, but not its value.
 #[must_use]
 pub(super) fn limit(text: &str, read: fn(&str) -> Option<f32>, greatest: f32) -> Limit {
     match text.trim() {
         "none" | "default" | "unsigned" | "no_sign" | "no_indications" => Limit::None,
-        text => match read(text) {
-            Some(value) if value <= greatest => Limit::At(value),
-            _ => Limit::Unreadable,
-        },
+        text => {
+            let one = |text: &str| match read(text) {
+                Some(value) if value <= greatest => Limit::At(value),
+                _ => Limit::Unreadable,
+            };
+            text.split(';').map(one).fold(Limit::None, Limit::stricter)
+        }
     }
 }
 
@@ -125,7 +151,7 @@ pub(super) fn speed(text: &str) -> Speed {
 }
 
 fn km_h(text: &str) -> Option<NonZeroU8> {
-    let (value, unit) = number(text)?;
+    let (value, unit) = number(text).filter(|_| !text.contains(','))?;
     let factor = match unit {
         "" | "km/h" | "kmh" | "kph" => 1.0,
         "mph" => MILE_KM,
@@ -180,6 +206,19 @@ mod tests {
             ("75\"", 1.905),
             ("350 cm", 3.5),
             ("2 km", 2000.0),
+            ("7,5", 7.5),
+            ("3,80 m", 3.8),
+            ("12'6", 3.81),
+            ("12 ft", 3.6576),
+            ("380 cm", 3.8),
+            ("3 m 80 cm", 3.8),
+            ("11'-8\"", 3.556),
+            ("13′ 6″", 4.1148),
+            ("12’6”", 3.81),
+            ("13.5'", 4.1148),
+            ("12.5 ft", 3.81),
+            ("12 ft. 10 in.", 3.9116),
+            ("4 м", 4.0),
         ] {
             let got = metres(text).unwrap_or(-1.0);
             assert!((got - expected).abs() < 1e-4 * expected, "{text}: {got}");
@@ -189,7 +228,12 @@ mod tests {
     #[test]
     fn what_is_no_positive_length_is_none() {
         for text in [
-            "7,5",
+            "7,500",
+            "1,2,5",
+            "7,",
+            ",5",
+            "3 m 800 cm",
+            "12 yd",
             "-3",
             "0",
             "0.0",
@@ -221,13 +265,24 @@ mod tests {
 
     #[test]
     fn masses_are_read_in_their_units() {
-        for (text, expected) in
-            [("7.5", 7.5), ("7.5 t", 7.5), ("3500 kg", 3.5), ("10 st", 9.071_847), ("16000 lbs", 7.257_478)]
-        {
+        for (text, expected) in [
+            ("7.5", 7.5),
+            ("7.5 t", 7.5),
+            ("3500 kg", 3.5),
+            ("10 st", 9.071_847),
+            ("16000 lbs", 7.257_478),
+            ("7,5 t", 7.5),
+            ("3500 кг", 3.5),
+            ("8 т", 8.0),
+            ("27 kips", 12.246_994),
+            ("10 lt", 10.160_469),
+            ("80000 lb", 36.287_39),
+            ("1.200 kg", 0.0012),
+        ] {
             let got = tonnes(text).unwrap_or(-1.0);
             assert!((got - expected).abs() < 1e-4, "{text}: {got}");
         }
-        for text in ["-3", "7,5 t", "7.5 tons", "t", "NaN", "0"] {
+        for text in ["-3", "7.5 tons", "t", "NaN", "0", "12,000 lbs", "7.5 x"] {
             assert_eq!(tonnes(text), None, "{text}");
         }
     }
@@ -240,6 +295,9 @@ mod tests {
         assert_eq!(limit("", metres, 15.0), Limit::Unreadable);
         assert_eq!(limit("4", metres, 15.0), Limit::At(4.0));
         assert_eq!(limit("7500", tonnes, 500.0), Limit::Unreadable);
+        assert_eq!(limit("7.5;3.5", tonnes, 500.0), Limit::At(3.5));
+        assert_eq!(limit("12;7,5", tonnes, 500.0), Limit::At(7.5));
+        assert_eq!(limit("12;heavy", tonnes, 500.0), Limit::Unreadable);
     }
 
     #[test]

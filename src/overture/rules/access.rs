@@ -1,8 +1,8 @@
-//! Access restrictions: what each does to an articulated lorry, and what all of them do together.
+//! Access restrictions: what each does to an articulated lorry and to a bus, and what all of them do together.
 
 use super::measures;
 use super::{Limit, LimitKind, Oneway, Permission, headings};
-use crate::osm::facts::Legal;
+use crate::osm::facts::{Legal, RuleSet};
 use crate::overture::record::{Access as Rule, When};
 
 /// How specific the modes of a rule are for a lorry. The more specific one is the greater.
@@ -14,15 +14,22 @@ pub(super) enum Rank {
     Vehicle,
     /// `motor_vehicle`
     MotorVehicle,
-    /// `truck`, `hgv`
+    /// `truck`, `hgv`; for a bus, `bus`
     Lorry,
 }
 
-/// Modes that are no lorries.
-const OTHERS: [&str; 9] = ["bicycle", "bus", "car", "emergency", "foot", "hov", "motorcycle", "pedestrian", "taxi"];
+/// For whom rules are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum For {
+    Lorries,
+    Buses,
+}
 
-/// The rank of a rule's modes, and whether some of them are unknown. `None` if it concerns no lorry.
-fn rank(when: Option<&When>) -> (Option<Rank>, bool) {
+/// Modes that are neither lorries nor buses.
+const OTHERS: [&str; 8] = ["bicycle", "car", "emergency", "foot", "hov", "motorcycle", "pedestrian", "taxi"];
+
+/// The rank of a rule's modes, and whether some of them are unknown. `None` if it concerns no vehicle of the kind.
+fn rank(when: Option<&When>, whom: For) -> (Option<Rank>, bool) {
     let Some(modes) = when.and_then(|when| when.mode.as_ref()).filter(|modes| !modes.is_empty()) else {
         return (Some(Rank::All), false);
     };
@@ -30,7 +37,8 @@ fn rank(when: Option<&When>) -> (Option<Rank>, bool) {
     let of_mode = |mode: &String| match mode.as_str() {
         "vehicle" => Some(Rank::Vehicle),
         "motor_vehicle" => Some(Rank::MotorVehicle),
-        "truck" | "hgv" => Some(Rank::Lorry),
+        "truck" | "hgv" => (whom == For::Lorries).then_some(Rank::Lorry),
+        "bus" => (whom == For::Buses).then_some(Rank::Lorry),
         other => {
             strange |= !OTHERS.contains(&other);
             None
@@ -41,28 +49,32 @@ fn rank(when: Option<&When>) -> (Option<Rank>, bool) {
 
 /// Whether a rule that closes or slows may concern a lorry. An unknown mode may be one.
 pub(in crate::overture) fn concerns_lorries(when: Option<&When>) -> bool {
-    let (rank, strange) = rank(when);
+    let (rank, strange) = rank(when, For::Lorries);
     rank.is_some() || strange
 }
 
 /// What a rule does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Effect {
     /// Closes the headings, whole or to through traffic. `direction`: the rule says that this direction of travel does not exist.
     Deny { rank: Rank, headings: [bool; 2], to: Permission, direction: bool },
+    /// Closes the headings at some times.
+    DenyDuring { rank: Rank, headings: [bool; 2], times: String },
     /// Lifts denials.
     Allow { rank: Rank, headings: [bool; 2], to: Permission },
     /// Bars large vehicles.
     Limit { headings: [bool; 2], kind: LimitKind, limit: Limit },
+    /// Bars vehicles with more axles.
+    Axles { headings: [bool; 2], most: u32 },
     /// Nothing, and why.
     None(&'static str),
 }
 
 impl Effect {
     /// The effect of a rule, and a remark on it.
-    pub(super) fn of(rule: &Rule) -> (Self, Option<&'static str>) {
+    pub(super) fn of(rule: &Rule, whom: For) -> (Self, Option<&'static str>) {
         let when = rule.when.as_ref();
-        let (rank, strange_mode) = rank(when);
+        let (rank, strange_mode) = rank(when, whom);
         let strange = strange_mode || when.is_some_and(When::is_strange);
         match rule.access_type.as_deref() {
             Some("allowed" | "designated") => (Self::allow(when, rank, strange), None),
@@ -122,6 +134,9 @@ impl Effect {
             let usable = sizes.iter().filter_map(measures::limit).min_by_key(|(kind, _)| order(*kind));
             let note = if sizes.len() > 1 { Some("several_sizes") } else { times.then_some("condition_undecided") };
             return match usable {
+                None if let Some(most) = sizes.iter().find_map(measures::axles) => {
+                    (Self::Axles { headings, most }, note)
+                }
                 Some((kind, limit)) => (Self::Limit { headings, kind, limit }, note),
                 // Every vehicle has a length, so this makes every verdict unknown.
                 None => (
@@ -129,6 +144,9 @@ impl Effect {
                     Some("size_undecided"),
                 ),
             };
+        }
+        if let (Some(times), None, None) = (&when.during, &when.using, &when.recognized) {
+            return (Self::DenyDuring { rank, headings, times: times.clone() }, None);
         }
         if times {
             return (
@@ -160,12 +178,34 @@ pub(super) struct Access {
     denied: [[Permission; 4]; 2],
     /// By heading: whether a rule says that the direction does not exist.
     absent: [bool; 2],
+    /// Times at which headings are closed, by rank.
+    times: Vec<(usize, Rank, String)>,
+    /// Greatest number of axles, by heading.
+    axles: [Option<u32>; 2],
+}
+
+/// Access of a part of a road for lorries or for buses.
+pub(super) struct Outcome {
+    pub(super) limits: [Legal; 2],
+    pub(super) denied: [[Permission; 4]; 2],
+    pub(super) oneway: Oneway,
+    pub(super) times: Vec<(usize, Rank, String)>,
+    pub(super) axles: [Option<u32>; 2],
 }
 
 impl Access {
-    pub(super) fn apply(&mut self, effect: Effect) {
-        match effect {
+    pub(super) fn apply(&mut self, effect: &Effect) {
+        match effect.clone() {
             Effect::None(_) => {}
+            Effect::Axles { headings, most } => {
+                for (slot, _) in self.axles.iter_mut().zip(headings).filter(|(_, on)| *on) {
+                    *slot = Some(slot.map_or(most, |known| known.min(most)));
+                }
+            }
+            Effect::DenyDuring { rank, headings, times } => {
+                let on = headings.into_iter().enumerate().filter(|(_, on)| *on);
+                self.times.extend(on.map(|(heading, _)| (heading, rank, times.clone())));
+            }
             Effect::Limit { headings, kind, limit } => {
                 for (legal, _) in self.limits.iter_mut().zip(headings).filter(|(_, on)| *on) {
                     kind.add(legal, limit);
@@ -182,24 +222,84 @@ impl Access {
                 for (heading, _) in headings.into_iter().enumerate().filter(|(_, on)| *on) {
                     self.denied[heading].iter_mut().take(rank as usize + 1).for_each(|slot| *slot = (*slot).min(to));
                     self.absent[heading] = false;
+                    self.times.retain(|(closed, of, _)| *closed != heading || *of > rank || to > Permission::Yes);
                 }
             }
         }
     }
 
-    /// Limits and access by heading, and the directions that exist.
-    pub(super) fn finish(self) -> ([Legal; 2], Oneway) {
-        let mut legal = self.limits;
-        for (legal, denied) in legal.iter_mut().zip(self.denied) {
-            let [general @ .., lorry] = denied;
-            legal.motor_vehicle = general.into_iter().max().unwrap_or_default();
-            legal.hgv = lorry;
-        }
+    /// What all rules together say.
+    pub(super) fn finish(self) -> Outcome {
         let oneway = match self.absent {
             [false, true] => Oneway::Forward,
             [true, false] => Oneway::Backward,
             _ => Oneway::No,
         };
+        Outcome { limits: self.limits, denied: self.denied, oneway, times: self.times, axles: self.axles }
+    }
+}
+
+impl Outcome {
+    /// Access by the general ranks, and by that of the kind of vehicle.
+    fn permissions(&self, heading: usize) -> [Permission; 2] {
+        let [general @ .., own] = self.denied[heading];
+        [general.into_iter().max().unwrap_or_default(), own]
+    }
+
+    /// Limits and access by heading, and the directions that exist for some vehicle. What differs for buses, and what depends on times or
+    /// axles, becomes rules as tags would say them.
+    pub(super) fn with_buses(self, buses: &Self) -> ([Legal; 2], Oneway) {
+        let oneway = if self.oneway == buses.oneway { self.oneway } else { Oneway::No };
+        let mut legal = self.limits.clone();
+        for (heading, legal) in legal.iter_mut().enumerate() {
+            let [general, lorry] = self.permissions(heading);
+            (legal.motor_vehicle, legal.hgv) = (general, lorry);
+            let timed = |rank: fn(Rank) -> bool| self.times.iter().any(|(at, of, _)| *at == heading && rank(*of));
+            if timed(|rank| rank < Rank::Lorry) {
+                legal.motor_vehicle = legal.motor_vehicle.max(Permission::Restricted);
+            }
+            if timed(|rank| rank == Rank::Lorry) {
+                legal.hgv = legal.hgv.max(Permission::Restricted);
+            }
+            legal.rules = self.rules(buses, heading);
+        }
         (legal, oneway)
+    }
+
+    /// What holds at all times, with the direction of travel.
+    fn total(&self, heading: usize) -> Permission {
+        let gone = matches!((heading, self.oneway), (0, Oneway::Backward) | (1, Oneway::Forward));
+        let closed = if gone { Permission::No } else { Permission::Yes };
+        self.permissions(heading).into_iter().fold(closed, Permission::max)
+    }
+
+    fn rules(&self, buses: &Self, heading: usize) -> Option<RuleSet> {
+        let both = [("hgv", self), ("bus", buses)];
+        let timed = both.iter().any(|(_, outcome)| outcome.times.iter().any(|(at, ..)| *at == heading));
+        let axles = both.iter().any(|(_, outcome)| outcome.axles[heading].is_some());
+        let differ = self.total(heading) != buses.total(heading) || self.limits[heading] != buses.limits[heading];
+        if !(timed || axles || differ) {
+            return None;
+        }
+        let word = |permission| match permission {
+            Permission::Yes => "yes",
+            Permission::Restricted => "destination",
+            Permission::No => "no",
+        };
+        let general = self.total(heading).min(buses.total(heading));
+        let mut tags = vec![("motor_vehicle".to_owned(), word(general).to_owned())];
+        for (key, outcome) in both {
+            if outcome.total(heading) != general {
+                tags.push((key.to_owned(), word(outcome.total(heading)).to_owned()));
+            }
+            let times = outcome.times.iter().filter(|(at, ..)| *at == heading);
+            let times: Vec<String> = times.map(|(_, _, times)| format!("no @ ({times})")).collect();
+            if !times.is_empty() {
+                tags.push((format!("{key}:conditional"), times.join("; ")));
+            }
+            tags.extend(outcome.axles[heading].map(|most| (format!("maxaxles:{key}"), most.to_string())));
+            tags.extend(outcome.limits[heading].limit_tags(&format!(":{key}")));
+        }
+        RuleSet::from_tags(&tags)
     }
 }

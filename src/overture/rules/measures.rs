@@ -52,6 +52,19 @@ pub(super) fn limit(comparison: &Comparison) -> Option<(LimitKind, Limit)> {
     Some((kind, limit))
 }
 
+/// The greatest number of axles that a denial by this comparison leaves.
+pub(super) fn axles(comparison: &Comparison) -> Option<u32> {
+    if comparison.dimension.as_deref() != Some("axle_count") {
+        return None;
+    }
+    let value = comparison.value.filter(|value| (1.0..=100.0).contains(value) && value.fract() == 0.0)? as u32;
+    match comparison.comparison.as_deref()? {
+        "greater_than" => Some(value),
+        "greater_than_equal" => value.checked_sub(1),
+        _ => None,
+    }
+}
+
 /// A speed limit, to the nearest whole number. What no road has is no limit.
 pub(super) fn km_h(speed: &Speed) -> Option<NonZeroU8> {
     let factor = match speed.unit.as_deref()? {

@@ -10,10 +10,10 @@ use std::num::NonZeroU8;
 
 use super::account::{Account, RULE};
 use super::record::{Segment, SpeedLimit, When};
-use crate::osm::facts::{GivenRoad, Limit, LimitKind, Oneway, Permission, RoadClass};
+use crate::osm::facts::{GivenRoad, Legal, Limit, LimitKind, Oneway, Permission, RoadClass};
 
 pub(super) use access::concerns_lorries;
-use access::{Access, Effect, Rank};
+use access::{Access, Effect, For, Rank};
 
 /// Part of a segment that a rule holds on: shares from its begin and to its end.
 pub(super) type Range = [f64; 2];
@@ -22,6 +22,7 @@ pub(super) type Range = [f64; 2];
 #[derive(Debug, Default)]
 pub(super) struct Rules {
     access: Vec<(Range, Effect)>,
+    buses: Vec<(Range, Effect)>,
     speeds: Vec<(Range, [bool; 2], NonZeroU8)>,
     widths: Vec<(Range, f64)>,
     links: Vec<Range>,
@@ -102,11 +103,21 @@ impl Rules {
     }
 
     fn add_access(&mut self, rule: &super::record::Access, account: &mut Account) {
-        let (effect, note) = Effect::of(rule);
+        let (effect, note) = Effect::of(rule, For::Lorries);
+        let (of_buses, _) = Effect::of(rule, For::Buses);
         if let Some(note) = note {
             account.noted(RULE, note, 1);
         }
-        match (effect, range(rule.between.as_deref())) {
+        let place = range(rule.between.as_deref());
+        let for_buses = match (&of_buses, place) {
+            (Effect::None(_), _) | (Effect::Allow { .. }, None) => false,
+            (_, place) => {
+                self.buses.push((place.unwrap_or([0.0, 1.0]), of_buses));
+                true
+            }
+        };
+        match (effect, place) {
+            (Effect::None(_), _) if for_buses => account.kept(RULE, 1),
             (Effect::None(reason), _) => account.left_out(RULE, reason, 1),
             // Nobody knows where it opens the road.
             (Effect::Allow { .. }, None) => account.left_out(RULE, "between_unreadable", 1),
@@ -141,7 +152,7 @@ impl Rules {
 
     /// The shares at which facts may change, ascending and distinct.
     pub(super) fn changes(&self) -> Vec<f64> {
-        let ranges = self.access.iter().map(|rule| rule.0);
+        let ranges = self.access.iter().chain(&self.buses).map(|rule| rule.0);
         let ranges = ranges.chain(self.speeds.iter().map(|rule| rule.0)).chain(self.widths.iter().map(|rule| rule.0));
         let ranges = ranges.chain(self.links.iter().copied()).chain(self.closed.iter().copied());
         let mut changes: Vec<f64> = ranges.flatten().filter(|share| *share > 0.0 && *share < 1.0).collect();
@@ -165,13 +176,15 @@ impl Rules {
     /// The road between two shares. No rule changes inside.
     pub(super) fn road(&self, class: RoadClass, part: Range) -> GivenRoad {
         let holds = |range: &Range| holds(*range, part);
-        let mut access = Access::default();
-        for (_, effect) in self.access.iter().filter(|(range, _)| holds(range)) {
-            access.apply(*effect);
-        }
-        let (mut legal, oneway) = access.finish();
+        let all = |effects: &[(Range, Effect)]| {
+            let mut access = Access::default();
+            effects.iter().filter(|(range, _)| holds(range)).for_each(|(_, effect)| access.apply(effect));
+            access.finish()
+        };
+        let (mut legal, oneway) = all(&self.access).with_buses(&all(&self.buses));
         if self.closed.iter().any(holds) {
-            legal.iter_mut().for_each(|legal| legal.motor_vehicle = Permission::No);
+            let closed = Legal { motor_vehicle: Permission::No, ..Legal::default() };
+            legal = legal.map(|legal| legal.merge(&closed));
         }
         let mut max_speed_km_h: [Option<NonZeroU8>; 2] = [None; 2];
         for (_, headings, km_h) in self.speeds.iter().filter(|(range, ..)| holds(range)) {

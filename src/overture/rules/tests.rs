@@ -31,7 +31,7 @@ fn counts(account: &Account) -> Vec<(String, String, u64)> {
 }
 
 fn verdicts(road: &GivenRoad) -> [Option<Verdict>; 2] {
-    road.legal.map(|legal| legal.forbids(&semi()))
+    road.legal.clone().map(|legal| legal.forbids(&semi()))
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn sizes_are_limits_under_the_bounds_of_tags() {
         let size = json!({"dimension": dimension, "comparison": comparison, "value": value, "unit": unit});
         let (road, _) = whole(json!([{"access_type": "denied", "when": {"vehicle": [size]}}]));
         assert_eq!(road.legal[0], road.legal[1]);
-        road.legal[0]
+        road.legal[0].clone()
     };
     assert_eq!(size("height", "greater_than", 3.8, "m").max_height, Limit::At(3.8));
     assert_eq!(size("height", "greater_than", 12.0, "ft").max_height, Limit::At(3.6576));
@@ -64,10 +64,43 @@ fn sizes_are_limits_under_the_bounds_of_tags() {
     assert_eq!(to_length("greater_than_equal", 16.6), None);
     for unclear in [
         size("length", "less_than", 5.0, "m"),
-        size("axle_count", "greater_than", 4.0, ""),
+        size("axle_count", "less_than", 4.0, ""),
         size("height", "equal", 4.0, "m"),
     ] {
         assert_eq!(unclear.forbids(&semi()), Some(Verdict::Unknown(UnknownReason::Limit)));
+    }
+}
+
+#[test]
+fn buses_axles_and_times_have_rules_of_their_own() {
+    let vehicle = |id: &str| Catalogue::builtin().unwrap().get(id).unwrap().clone();
+    let (lorry, bus) = (vehicle("EU-SEMI16.5"), vehicle("BUS-ART18-EU"));
+    let said = |access: Value| {
+        let legal = whole(access).0.legal[0].clone();
+        [&lorry, &bus].map(|vehicle| legal.forbids(vehicle))
+    };
+    let forbidden = |reason| Some(Verdict::Forbidden(reason));
+    let time = Some(Verdict::Unknown(UnknownReason::Time));
+    for (access, expected) in [
+        (json!([{"access_type": "denied", "when": {"mode": ["bus"]}}]), [None, forbidden(ForbiddenReason::Class)]),
+        (json!([{"access_type": "denied", "when": {"mode": ["hgv"]}}]), [forbidden(ForbiddenReason::Hgv), None]),
+        (
+            json!([{"access_type": "denied", "when": {"mode": ["motor_vehicle"]}}, {"access_type": "allowed", "when": {"mode": ["bus"]}}]),
+            [forbidden(ForbiddenReason::Hgv), None],
+        ),
+        (json!([{"access_type": "denied"}]), [forbidden(ForbiddenReason::Access); 2]),
+        (json!([{"access_type": "denied", "when": {"during": "22:00-06:00"}}]), [time; 2]),
+        (json!([{"access_type": "denied", "when": {"during": "22:00-06:00", "mode": ["bus"]}}]), [None, time]),
+        (
+            json!([{"access_type": "denied", "when": {"vehicle": [{"dimension": "axle_count", "comparison": "greater_than", "value": 4}]}}]),
+            [forbidden(ForbiddenReason::Axles), None],
+        ),
+        (
+            json!([{"access_type": "denied", "when": {"mode": ["bus"], "vehicle": [{"dimension": "length", "comparison": "greater_than", "value": 12, "unit": "m"}]}}]),
+            [None, forbidden(ForbiddenReason::Length)],
+        ),
+    ] {
+        assert_eq!(said(access.clone()), expected, "{access}");
     }
 }
 
@@ -102,7 +135,7 @@ fn what_is_not_understood_closes_and_never_opens() {
 
 #[test]
 fn conditions_and_purposes_are_read_as_those_of_tags() {
-    let road = |access| whole(access).0.legal[0];
+    let road = |access| whole(access).0.legal[0].clone();
     let at_night = road(json!([{"access_type": "denied", "when": {"during": "22:00-06:00"}}]));
     assert_eq!((at_night.motor_vehicle, at_night.hgv), (Permission::Restricted, Permission::Yes));
     let delivery = json!([{"access_type": "denied", "when": {"mode": ["hgv"]}}, {"access_type": "allowed", "when": {"mode": ["hgv"], "using": ["to_deliver"]}}]);

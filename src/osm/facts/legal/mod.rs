@@ -97,14 +97,20 @@ impl Legal {
         let mut tags: Vec<(&str, String)> = Vec::new();
         tags.extend(word(self.motor_vehicle).map(|word| ("motor_vehicle", word.to_owned())));
         tags.extend(word(self.hgv).map(|word| ("hgv", word.to_owned())));
-        for (limit, _, key) in plain_limits(self) {
-            match limit {
-                Limit::None => {}
-                Limit::At(most) => tags.push((key, most.to_string())),
-                Limit::Unreadable => tags.push((key, "unreadable".to_owned())),
-            }
-        }
-        vec![Group::new(tags.iter().map(|(key, value)| (*key, value.as_str())), Direction::Forward)]
+        let limits = self.limit_tags("");
+        let tags = tags.iter().map(|(key, value)| (*key, value.as_str()));
+        let limits = limits.iter().map(|(key, value)| (key.as_str(), value.as_str()));
+        vec![Group::new(tags.chain(limits), Direction::Forward)]
+    }
+
+    /// The plain limits as tags, their keys with an ending.
+    pub(crate) fn limit_tags(&self, ending: &str) -> Vec<(String, String)> {
+        let said = plain_limits(self).into_iter().filter_map(|(limit, _, key)| match limit {
+            Limit::None => None,
+            Limit::At(most) => Some((key, most.to_string())),
+            Limit::Unreadable => Some((key, "unreadable".to_owned())),
+        });
+        said.map(|(key, value)| (format!("{key}{ending}"), value)).collect()
     }
 
     /// The same with other greatest heights and masses, where they are given: somebody measured what the signs say.

@@ -91,6 +91,7 @@ fn limits_forbid_or_leave_unknown() {
         ("maxaxleload=1", None),
         ("maxheight=low", Some(Verdict::Unknown(UnknownReason::Limit))),
         ("maxaxleload=low", None),
+        ("maxaxleload:hgv=low", None),
         ("access=private", Some(Verdict::Forbidden(Access))),
         ("hgv=no", Some(Verdict::Forbidden(Hgv))),
         ("hgv=delivery", None),
@@ -121,6 +122,8 @@ fn nodes_bar_narrow_and_limit() {
         "barrier=bollard motor_vehicle=yes",
         "barrier=cattle_grid access=yes",
         "amenity=bar access=private width=2",
+        "motorcar=no",
+        "foot=no bicycle=yes",
     ] {
         assert_eq!(point_facts(&tags(text)), None, "{text}");
     }
