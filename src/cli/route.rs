@@ -12,11 +12,11 @@ use netcert::network::{Network, PassageKind};
 use netcert::picture;
 use netcert::region::Region;
 use netcert::route::{
-    self, Answer, Comparison, Conditional, Measure, PartKind, PartResult, Peer, Planner, Position, Question,
-    Route as Found,
+    self, Answer, Comparison, Conditional, DESTINATION_VALUES, Measure, PartKind, PartResult, Peer, Planner, Position,
+    Question, Route as Found,
 };
 use netcert::stop::Stop;
-use netcert::words::{Named, verdict_words};
+use netcert::words::Named;
 
 use super::Session;
 use super::explain::wrapped;
@@ -234,6 +234,7 @@ fn tell(
         writeln!(out)?;
         parts(out, network, found)?;
         writeln!(out)?;
+        destinations(out, inputs, found)?;
     }
     if answer.routes.is_empty() {
         writeln!(out, "{} {}: no certified route\n", vehicle.id, vehicle.name)?;
@@ -241,7 +242,7 @@ fn tell(
             under_conditions(out, inputs, conditional)?;
         }
         if answer.conditional.is_none() || answer.obstacles.is_some() {
-            blocked(out, network, answer, compared)?;
+            blocked(out, inputs, answer, compared)?;
         }
     }
     for refutation in &answer.refuted {
@@ -289,6 +290,7 @@ fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &C
     numbers(out, inputs, found)?;
     writeln!(out)?;
     parts(out, network, found)?;
+    destinations(out, inputs, found)?;
     let told = "The numbers hold only if all of this is so on site. Nothing here says that it is: `netcert route --sheet` writes it \
                 down to be checked, and `netcert evidence add` takes the measurements.";
     writeln!(out, "\n{}\n", wrapped(told, "  "))
@@ -366,12 +368,29 @@ fn how(network: &Network, at: PartKind) -> &'static str {
     }
 }
 
+/// Says where the route uses a road that is open to its destination only.
+fn destinations(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {
+    let stretches = found.destination_only(&inputs.roads.network, &inputs.driver.model.vehicle);
+    for stretch in &stretches {
+        let text = format!(
+            "Only for a vehicle whose journey begins or ends there: {} from {:.2} km to {:.2} km ({} = {DESTINATION_VALUES}).",
+            printable(&stretch.title),
+            stretch.from_m / 1000.0,
+            stretch.to_m / 1000.0,
+            stretch.tag
+        );
+        writeln!(out, "{}", wrapped(&text, "  "))?;
+    }
+    if stretches.is_empty() { Ok(()) } else { writeln!(out) }
+}
+
 fn blocked(
     out: &mut dyn Write,
-    network: &Network,
+    inputs: &RoutingInputs,
     answer: &Answer,
     compared: Option<&Comparison>,
 ) -> std::io::Result<()> {
+    let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
     let Some(obstacles) = &answer.obstacles else {
         return writeln!(out, "  No roads lead there at all, lawful turns and one-way roads considered.\n");
     };
@@ -379,17 +398,19 @@ fn blocked(
         writeln!(out, "  Given up after {} whole routes that failed; --tries allows more.", answer.refuted.len())?;
     }
     let count = obstacles.len();
-    writeln!(out, "  What would have to become safe: {count} {}\n", if count == 1 { "place" } else { "places" })?;
+    let closed = obstacles.iter().any(|obstacle| obstacle.destination_only);
+    let what = if closed { "What stands in the way" } else { "What would have to become safe" };
+    writeln!(out, "  {what}: {count} {}\n", if count == 1 { "place" } else { "places" })?;
     let as_reference = compared.map(|compared| format!("as {}", compared.relative_to));
     let more = as_reference.iter().flat_map(|heading| [">relative", heading.as_str()]);
     let headings: Vec<&str> = ["at", "", "verdict", ">missing"].into_iter().chain(more).chain(["road"]).collect();
     let mut table = Table::new(&headings);
     for (number, obstacle) in obstacles.iter().enumerate() {
-        let (verdict, reason) = verdict_words(obstacle.permit.verdict);
-        let verdict = match (obstacle.refuted, reason) {
-            (true, _) => "refuted as part of the whole".to_owned(),
-            (false, "") => verdict.to_owned(),
-            (false, reason) => format!("{verdict}: {reason}"),
+        let verdict = match obstacle.words(network, vehicle) {
+            ("refuted", _) => "refuted as part of the whole".to_owned(),
+            (verdict, _) if obstacle.destination_only => format!("{verdict}: destination only"),
+            (verdict, "") => verdict.to_owned(),
+            (verdict, reason) => format!("{verdict}: {reason}"),
         };
         let relative = compared.map(|compared| compared.obstacles.get(number).copied().unwrap_or_default());
         let own = [
@@ -402,6 +423,15 @@ fn blocked(
         table.row(own.into_iter().chain(relative.into_iter().flat_map(relative::words)).chain([road]));
     }
     table.write(out, "  ")?;
+    for obstacle in obstacles {
+        let Some(tag) = obstacle.tag(network, vehicle) else { continue };
+        let road = printable(&route::title(network, obstacle.at));
+        let text = format!(
+            "{road} is open only to a vehicle whose journey begins or ends there ({tag} = {DESTINATION_VALUES}), and the way passes \
+             through it. No other way is certified."
+        );
+        writeln!(out, "\n{}", wrapped(&text, "  "))?;
+    }
     let cheapest =
         "The cheapest set of places: each costs 1, plus the metres that are missing there (5 where that is not known).";
     writeln!(out, "\n{}\n", wrapped(cheapest, "  "))

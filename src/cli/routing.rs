@@ -62,7 +62,7 @@ impl RoutingArgs {
 
 impl RoutingInputs {
     pub(crate) fn graph(&self, measure: Measure) -> Graph {
-        Graph::new(&self.roads, &self.speeds, measure)
+        Graph::new(&self.roads, &self.speeds, measure).for_vehicle(&self.driver.model.vehicle)
     }
 
     /// The settings that the certificates were made with.

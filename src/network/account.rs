@@ -3,6 +3,7 @@
 
 use super::Edge;
 use super::cut::Unusable;
+use super::restrictions::Reading;
 use crate::account::AccountRow;
 
 /// Counts of a run. `ways_read = ways_kept + Σ left out` and `directions = edges + not_driven`; areas add up likewise.
@@ -70,6 +71,18 @@ pub struct NetworkAccount {
     pub restrictions_off_network: u64,
     /// Restrictions left out: they forbid nothing that could be driven.
     pub restrictions_without_effect: u64,
+    /// Restrictions kept of which the value's side decides which turn is meant.
+    pub restrictions_by_side: u64,
+    /// Restrictions kept that forbid every turn that may be meant, because the side does not decide.
+    pub restrictions_any_side: u64,
+    /// Restrictions kept with a member that reaches the turn only over the rest of its road.
+    pub restrictions_beyond_split: u64,
+    /// Restrictions kept whose `via` is missing or in another order.
+    pub restrictions_via_found: u64,
+    /// Restrictions `only_…` kept that forbid every way on, because the one that they allow is not on the network.
+    pub restrictions_no_destination: u64,
+    /// Restrictions `only_…` off the network: nobody knows where they hold.
+    pub only_not_placed: u64,
     /// Sequences of edges that restrictions forbid.
     pub forbidden_sequences: u64,
     /// Forbidden sequences with an undecided condition.
@@ -96,12 +109,22 @@ impl NetworkAccount {
         self.node_limited_edges += u64::from(limited);
     }
 
-    /// Counts a restriction.
-    pub(super) fn count_restriction(&mut self, on_network: bool, forbids: bool) {
+    /// Counts a restriction. `forbids` says how it was read, if it forbids anything.
+    pub(super) fn count_restriction(&mut self, on_network: bool, only: bool, forbids: Option<&Reading>) {
         match (on_network, forbids) {
-            (_, true) => self.restrictions_kept += 1,
-            (true, false) => self.restrictions_without_effect += 1,
-            (false, false) => self.restrictions_off_network += 1,
+            (_, Some(reading)) => {
+                self.restrictions_kept += 1;
+                self.restrictions_by_side += u64::from(reading.by_side);
+                self.restrictions_any_side += u64::from(reading.any_side);
+                self.restrictions_beyond_split += u64::from(reading.beyond_split);
+                self.restrictions_via_found += u64::from(reading.via_found);
+                self.restrictions_no_destination += u64::from(reading.no_destination);
+            }
+            (true, None) => self.restrictions_without_effect += 1,
+            (false, None) => {
+                self.restrictions_off_network += 1;
+                self.only_not_placed += u64::from(only);
+            }
         }
     }
 
@@ -162,6 +185,12 @@ impl NetworkAccount {
             ("restriction", "kept", "", self.restrictions_kept),
             ("restriction", "left_out", "off_network", self.restrictions_off_network),
             ("restriction", "left_out", "without_effect", self.restrictions_without_effect),
+            ("restriction", "noted", "by_side", self.restrictions_by_side),
+            ("restriction", "noted", "any_side", self.restrictions_any_side),
+            ("restriction", "noted", "beyond_split", self.restrictions_beyond_split),
+            ("restriction", "noted", "via_found", self.restrictions_via_found),
+            ("restriction", "noted", "only_without_destination", self.restrictions_no_destination),
+            ("restriction", "noted", "only_not_placed", self.only_not_placed),
             ("restriction", "noted", "forbidden_sequence", self.forbidden_sequences),
             ("restriction", "noted", "conditional_sequence", self.conditional_sequences),
             ("restriction", "noted", "sequence_over_ways", self.long_sequences),

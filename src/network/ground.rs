@@ -13,7 +13,7 @@ use super::border::Border;
 use super::edges::Source;
 use super::extent::Extent;
 use super::portion::{Place, Portion};
-use super::restrictions::{self, Resolved};
+use super::restrictions::{self, Reading, Resolved};
 use super::stroke::{self, Chained};
 use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
@@ -53,7 +53,7 @@ pub struct Division {
     /// Grows with each portion.
     account: NetworkAccount,
     on_network: BTreeSet<u32>,
-    forbidding: BTreeSet<u32>,
+    forbidding: Forbidding,
     kept_areas: BTreeSet<i64>,
 }
 
@@ -105,7 +105,8 @@ where
         let portion = Portion::new(network, None, chained, resolved);
         account.cut_edges = 0;
         portion.count(&mut account);
-        let forbidding = portion.restrictions().map(|restriction| restriction.rule.0).collect();
+        let mut forbidding = Forbidding::default();
+        note_readings(&mut forbidding, &portion);
         self.count_restrictions(&mut account, &portion.on_network().iter().copied().collect(), &forbidding);
         count_areas(&mut account, portion.network.areas.all().iter());
         (portion, account)
@@ -146,7 +147,7 @@ where
             countries,
             account,
             on_network: BTreeSet::new(),
-            forbidding: BTreeSet::new(),
+            forbidding: Forbidding::default(),
             kept_areas: BTreeSet::new(),
         }
     }
@@ -172,7 +173,10 @@ where
             border.mark(&mut network);
         }
         let known: FxHashSet<i64> = network.roads.iter().map(|road| road.way_id).collect();
-        let takes = |restriction: &osm::Restriction| restriction.from.iter().any(|way| known.contains(way));
+        let takes = |restriction: &osm::Restriction| {
+            let ways = if restriction.from.is_empty() { &restriction.to } else { &restriction.from };
+            ways.iter().any(|way| known.contains(way))
+        };
         let meets = |area: &&Area| Extent::of(area.ring.iter().copied()).is_some_and(|extent| extent.meets(around));
         let areas = self.areas.iter().filter(meets).cloned().collect();
         let (chained, resolved) = self.complete(&mut network, takes, areas);
@@ -223,10 +227,20 @@ where
         }
     }
 
-    fn count_restrictions(&self, account: &mut NetworkAccount, on_network: &BTreeSet<u32>, forbidding: &BTreeSet<u32>) {
-        for no in 0..self.restrictions.len() as u32 {
-            account.count_restriction(on_network.contains(&no), forbidding.contains(&no));
+    fn count_restrictions(&self, account: &mut NetworkAccount, on_network: &BTreeSet<u32>, forbidding: &Forbidding) {
+        for (no, restriction) in (0_u32..).zip(&self.restrictions) {
+            let only = restriction.rules.iter().any(|rule| rule.kind.only);
+            account.count_restriction(on_network.contains(&no), only, forbidding.get(&no));
         }
+    }
+}
+
+/// The relations that forbid something, as indices, each with how it was read.
+type Forbidding = BTreeMap<u32, Reading>;
+
+fn note_readings(forbidding: &mut Forbidding, portion: &Portion) {
+    for restriction in portion.restrictions() {
+        forbidding.entry(restriction.rule.0).or_default().and(restriction.reading);
     }
 }
 
@@ -261,7 +275,7 @@ impl Division {
     pub fn add(&mut self, portion: &Portion) {
         portion.count(&mut self.account);
         self.on_network.extend(portion.on_network());
-        self.forbidding.extend(portion.restrictions().map(|restriction| restriction.rule.0));
+        note_readings(&mut self.forbidding, portion);
         self.kept_areas.extend(portion.network.areas.all().iter().map(|area| area.way_id));
     }
 

@@ -4,7 +4,7 @@
 //! Every one of the whole network is owned by exactly one portion. What a portion owns is as it is in the whole network.
 
 use super::blocks::Block;
-use super::restrictions::Resolved;
+use super::restrictions::{Reading, Resolved};
 use super::stroke::{Beginning, Chained};
 use super::{Edge, Network, NetworkAccount, Restriction};
 use crate::osm::LonLat;
@@ -37,6 +37,8 @@ pub(super) struct Place {
 pub struct PortionRestriction {
     /// Relation and rule of the extract, as indices: restrictions of the whole network are sorted by these, then by edges.
     pub rule: (u32, u32),
+    /// How its rule was read.
+    pub(super) reading: Reading,
     /// The restriction.
     pub restriction: Restriction,
     /// Its edges in driving order, as indices into the whole network.
@@ -52,8 +54,9 @@ impl Portion {
     #[must_use]
     pub fn whole(network: Network) -> Self {
         let rules = (0..network.restrictions.len() as u32).map(|no| (no, 0)).collect();
+        let readings = vec![Reading::default(); network.restrictions.len()];
         let chained = Chained { beginnings: Vec::new(), crowded: Vec::new() };
-        Self::new(network, None, chained, Resolved { rules, on_network: Vec::new() })
+        Self::new(network, None, chained, Resolved { rules, readings, on_network: Vec::new() })
     }
 
     /// The index of an edge in the whole network.
@@ -99,11 +102,12 @@ impl Portion {
 
     /// The restrictions that the portion owns.
     pub fn restrictions(&self) -> impl Iterator<Item = PortionRestriction> {
-        self.network.restrictions.iter().zip(&self.resolved.rules).filter_map(|(restriction, &rule)| {
+        let rules = self.resolved.rules.iter().zip(&self.resolved.readings);
+        self.network.restrictions.iter().zip(rules).filter_map(|(restriction, (&rule, &reading))| {
             let edges = self.network.sequence(restriction);
             self.owns(*edges.first()?).then(|| {
                 let edges = edges.iter().map(|&edge| self.edge(edge)).collect();
-                PortionRestriction { rule, restriction: restriction.clone(), edges }
+                PortionRestriction { rule, reading, restriction: restriction.clone(), edges }
             })
         })
     }

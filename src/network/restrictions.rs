@@ -1,15 +1,19 @@
 //! Turn restrictions of the map become sequences of edges that may not be driven one right after the other.
 //!
 //! A restriction whose members are on the network forbids at least what its sign forbids. If it is drawn loosely (a way
-//! that continues past the junction), every reading applies. `only_…` forbids every other movement out of the node.
-//! Over ways it is read strictly: after the `from` way a vehicle must take the `via` ways, and to their end. A
-//! restriction whose members no vehicle can drive one after the other forbids nothing and is counted.
+//! that runs on over the node), the value's side decides, and every reading applies where it does not (`sides`). A member
+//! that does not reach the node stands for the road that goes on there (`onward`). `only_…` forbids every other movement
+//! out of the node. Over ways it is read strictly: after the `from` way a vehicle must take the `via` ways, and to their
+//! end. A restriction whose members no vehicle can drive one after the other forbids nothing and is counted.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
+use super::onward::Onward;
+use super::sides::{Meant, meant};
 use super::vertices::Vertices;
 use super::{Network, Restriction, reverse};
-use crate::osm::facts::{RestrictedTurn, RestrictionKind};
+use crate::osm::facts::RestrictionKind;
 use crate::osm::{self, NodeTable, Via};
 
 /// Most sequences of one restriction, and most edges of one way over which a path is followed. No hand-drawn
@@ -22,8 +26,35 @@ const MOST_VIA_EDGES: usize = 256;
 pub(super) struct Resolved {
     /// By restriction of the network: the relation and its rule, as indices.
     pub(super) rules: Vec<(u32, u32)>,
+    /// By restriction of the network: how its rule was read.
+    pub(super) readings: Vec<Reading>,
     /// Relations whose members can be driven one after the other, as indices.
     pub(super) on_network: Vec<u32>,
+}
+
+/// How a rule was read that its members do not spell out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Reading {
+    /// A way runs on over the node, and the value's side decides.
+    pub(super) by_side: bool,
+    /// A way runs on over the node, and the side does not decide: every reading applies.
+    pub(super) any_side: bool,
+    /// A member is reached over the rest of its road, from which it was split.
+    pub(super) beyond_split: bool,
+    /// The `via` ways are in another order, or no `via` is given.
+    pub(super) via_found: bool,
+    /// An `only_…` whose destination is not on the network: every movement is forbidden.
+    pub(super) no_destination: bool,
+}
+
+impl Reading {
+    pub(super) fn and(&mut self, other: Self) {
+        self.by_side |= other.by_side;
+        self.any_side |= other.any_side;
+        self.beyond_split |= other.beyond_split;
+        self.via_found |= other.via_found;
+        self.no_destination |= other.no_destination;
+    }
 }
 
 /// Fills `restrictions` and `restriction_edges` of a network without restrictions. Leaves out the relations that `takes` refuses.
@@ -38,15 +69,16 @@ pub(super) fn resolve(
     if restrictions.is_empty() {
         return resolved;
     }
-    let found: Vec<(usize, usize, Vec<u32>)> = {
-        let resolver = Resolver { leaving: Leaving::of(network), network, nodes, vertices };
+    let found: Vec<(usize, usize, Reading, Vec<u32>)> = {
+        let leaving = Leaving::of(network);
+        let resolver = Resolver { leaving: &leaving, arriving: OnceCell::new(), network, nodes, vertices };
         let mut found = Vec::new();
         for (no, restriction) in restrictions.iter().enumerate().filter(|(_, restriction)| takes(restriction)) {
             let mut on_network = false;
-            for (rule, sequences) in resolver.sequences(restriction).into_iter().enumerate() {
-                let Some(sequences) = sequences else { continue };
+            for (rule, read) in resolver.read(restriction).into_iter().enumerate() {
+                let Some((reading, sequences)) = read else { continue };
                 on_network = true;
-                found.extend(sequences.into_iter().map(|edges| (no, rule, edges)));
+                found.extend(sequences.into_iter().map(|edges| (no, rule, reading, edges)));
             }
             if on_network {
                 resolved.on_network.push(no as u32);
@@ -54,9 +86,10 @@ pub(super) fn resolve(
         }
         found
     };
-    for (no, rule_no, edges) in found {
+    for (no, rule_no, reading, edges) in found {
         let Some((of, rule)) = restrictions.get(no).and_then(|of| Some((of, of.rules.get(rule_no)?))) else { continue };
         resolved.rules.push((no as u32, rule_no as u32));
+        resolved.readings.push(reading);
         let start = network.restriction_edges.len() as u32;
         network.restriction_edges.extend(edges);
         let edges = start..network.restriction_edges.len() as u32;
@@ -89,42 +122,57 @@ impl Leaving {
     }
 }
 
+/// What a rule forbids, sorted, and how it was read.
+type Read = (Reading, Vec<Vec<u32>>);
+
 struct Resolver<'n> {
     network: &'n Network,
     nodes: &'n NodeTable,
     vertices: &'n Vertices,
-    leaving: Leaving,
+    leaving: &'n Leaving,
+    /// Edges, sorted by the node at which they arrive. Rarely needed.
+    arriving: OnceCell<Vec<u32>>,
 }
 
 impl Resolver<'_> {
-    /// The sequences that each rule forbids, sorted. `None` if the members are not on the network.
-    fn sequences(&self, restriction: &osm::Restriction) -> Vec<Option<Vec<Vec<u32>>>> {
-        let members = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
-        let (from, to) = (members(&restriction.from), members(&restriction.to));
-        let sequences = |kind: RestrictionKind| {
+    /// What each rule forbids. `None` if the members are not on the network.
+    fn read(&self, restriction: &osm::Restriction) -> Vec<Option<Read>> {
+        let read = |kind: RestrictionKind| {
+            let mut reading = Reading::default();
             let mut all = match &restriction.via {
-                Via::Nodes(nodes) => self.at_nodes(kind, &from, nodes, &to),
-                Via::Ways(ways) => self.over_ways(kind, &from, ways, &to),
+                Via::Nodes(nodes) => self.at_nodes(kind, restriction, nodes, &mut reading),
+                Via::Ways(ways) => self.over_ways(kind, restriction, ways, &mut reading),
             }?;
             all.sort_unstable();
             all.dedup();
             all.truncate(MOST_SEQUENCES);
-            Some(all)
+            Some((reading, all))
         };
-        restriction.rules.iter().map(|rule| sequences(rule.kind)).collect()
+        restriction.rules.iter().map(|rule| read(rule.kind)).collect()
     }
 
-    fn at_nodes(&self, kind: RestrictionKind, from: &[u32], via: &[i64], to: &[u32]) -> Option<Vec<Vec<u32>>> {
+    fn at_nodes(
+        &self,
+        kind: RestrictionKind,
+        restriction: &osm::Restriction,
+        via: &[i64],
+        reading: &mut Reading,
+    ) -> Option<Vec<Vec<u32>>> {
+        let nodes: Vec<i64> = match via {
+            [] => self.meetings(restriction),
+            via => via.iter().filter_map(|&id| self.vertices.node(self.nodes, id)).collect(),
+        };
+        reading.via_found = via.is_empty();
+        let from = self.at_each(&nodes, &restriction.from, false, reading);
+        let to = self.at_each(&nodes, &restriction.to, true, reading);
         let mut on_network = false;
         let mut all = Vec::new();
-        for node in via.iter().filter_map(|&id| self.vertices.node(self.nodes, id)) {
-            let leaving = self.leaving.at(self.network, node);
-            for &f in from.iter().filter(|&&f| self.network.edges[f as usize].to_node == node) {
-                let named = |t: u32| to.contains(&t) && self.is_meant(kind, f, t);
-                on_network |= kind.only || leaving.iter().any(|&t| to.contains(&t));
-                let forbidden = leaving.iter().filter(|&&t| named(t) != kind.only);
-                all.extend(forbidden.take(MOST_SEQUENCES).map(|&t| vec![f, t]));
-            }
+        for (node, (from, to)) in nodes.iter().zip(from.iter().zip(&to)) {
+            let pairs =
+                if kind.only { self.only(kind, *node, from, to, reading) } else { self.no(kind, from, to, reading) };
+            let arrives = from.iter().any(|edges| !edges.is_empty());
+            on_network |= arrives && (kind.only || to.iter().any(|edges| !edges.is_empty()));
+            all.extend(pairs.into_iter().take(MOST_SEQUENCES).map(|(f, t)| vec![f, t]));
             if all.len() > MOST_SEQUENCES {
                 break;
             }
@@ -132,16 +180,121 @@ impl Resolver<'_> {
         on_network.then_some(all)
     }
 
-    /// A U-turn on one way means its reversal, not the continuation past the node.
-    fn is_meant(&self, kind: RestrictionKind, from: u32, to: u32) -> bool {
-        let same_way = self.way(from) == self.way(to);
-        kind.turn != RestrictedTurn::UTurn || !same_way || reverse(self.network, from, to)
+    /// The nodes at which a way `from` meets a way `to`.
+    fn meetings(&self, restriction: &osm::Restriction) -> Vec<i64> {
+        let edges = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
+        let edge = |edge: &u32| &self.network.edges[*edge as usize];
+        let starts: Vec<i64> = edges(&restriction.to).iter().map(|to| edge(to).from_node).collect();
+        let mut nodes: Vec<i64> = edges(&restriction.from).iter().map(|from| edge(from).to_node).collect();
+        nodes.retain(|node| starts.contains(node));
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
-    fn over_ways(&self, kind: RestrictionKind, from: &[u32], via: &[i64], to: &[u32]) -> Option<Vec<Vec<u32>>> {
+    /// By node: for each way, its edges that end there, or begin there if they are to `leave`. Without ways, all edges there count as
+    /// those of one way. A way that is at none of the nodes stands for the road that goes on to it.
+    fn at_each(&self, nodes: &[i64], ways: &[i64], leave: bool, reading: &mut Reading) -> Vec<Vec<Vec<u32>>> {
+        if ways.is_empty() {
+            let all = |&node: &i64| vec![if leave { self.leaving_at(node) } else { self.arriving_at(node) }.to_vec()];
+            return nodes.iter().map(all).collect();
+        }
+        let mut by_node = vec![Vec::new(); nodes.len()];
+        for &way in ways {
+            let at = |node: i64| -> Vec<u32> {
+                let there = |&edge: &u32| {
+                    let edge = &self.network.edges[edge as usize];
+                    (if leave { edge.from_node } else { edge.to_node }) == node
+                };
+                self.edges_of(way).filter(there).collect()
+            };
+            let mut own: Vec<Vec<u32>> = nodes.iter().map(|&node| at(node)).collect();
+            if own.iter().all(Vec::is_empty) {
+                let onward = Onward { network: self.network, leaving: self.leaving };
+                let edges = self.edges_of(way);
+                if edges.is_empty() {
+                    by_node.iter_mut().for_each(|all| all.push(Vec::new()));
+                    continue;
+                }
+                let found = |&node: &i64| {
+                    if leave { onward.from_node(node, &edges) } else { onward.to_node(&edges, node) }
+                };
+                own = nodes.iter().map(found).collect();
+                reading.beyond_split |= own.iter().any(|edges| !edges.is_empty());
+            }
+            by_node.iter_mut().zip(own).for_each(|(all, own)| all.push(own));
+        }
+        by_node
+    }
+
+    /// The movements that a `no_…` forbids at a node.
+    fn no(&self, kind: RestrictionKind, from: &[Vec<u32>], to: &[Vec<u32>], reading: &mut Reading) -> Vec<(u32, u32)> {
+        let mut all = Vec::new();
+        for (f, t) in from.iter().flat_map(|f| to.iter().map(move |t| (f, t))) {
+            let meant = meant(self.network, kind, f, t);
+            reading.by_side |= matches!(meant, Meant::BySide(_));
+            reading.any_side |= matches!(meant, Meant::Any(_));
+            all.extend_from_slice(meant.pairs());
+        }
+        all
+    }
+
+    /// The movements that an `only_…` forbids at a node: all but those that it surely means.
+    fn only(
+        &self,
+        kind: RestrictionKind,
+        node: i64,
+        from: &[Vec<u32>],
+        to: &[Vec<u32>],
+        reading: &mut Reading,
+    ) -> Vec<(u32, u32)> {
+        let leaving = self.leaving_at(node);
+        let mut all = Vec::new();
+        for arrivals in from.iter().filter(|arrivals| !arrivals.is_empty()) {
+            let meant: Vec<Meant> = to.iter().map(|to| meant(self.network, kind, arrivals, to)).collect();
+            reading.by_side |= meant.iter().any(|meant| matches!(meant, Meant::BySide(_)));
+            reading.no_destination |= meant.iter().all(|meant| meant.pairs().is_empty());
+            // Of two approaches on one way, the side names one.
+            let decided = |&f: &u32| {
+                let of = |meant: &Meant| matches!(meant, Meant::BySide(pairs) if pairs.iter().any(|pair| pair.0 == f));
+                meant.iter().any(of)
+            };
+            let by_side = arrivals.len() > 1 && arrivals.iter().any(decided);
+            for &f in arrivals.iter().filter(|f| !by_side || decided(f)) {
+                let kept: Vec<u32> = meant.iter().filter_map(|meant| alone(meant, f)).collect();
+                reading.any_side |= meant.iter().any(|meant| matches!(meant, Meant::Any(_)));
+                all.extend(leaving.iter().filter(|t| !kept.contains(t)).map(|&t| (f, t)));
+            }
+        }
+        all
+    }
+
+    fn over_ways(
+        &self,
+        kind: RestrictionKind,
+        restriction: &osm::Restriction,
+        via: &[i64],
+        reading: &mut Reading,
+    ) -> Option<Vec<Vec<u32>>> {
+        let edges = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
+        let (from, to) = (edges(&restriction.from), edges(&restriction.to));
         let mut paths = Vec::new();
-        for &f in from {
-            self.follow(&mut vec![f], via, to, &mut paths);
+        for &f in &from {
+            self.follow(&mut vec![f], via, Some(&to), &mut paths);
+        }
+        if paths.is_empty() && !to.is_empty() {
+            let mut wander = Wander { resolver: self, via, to: &to, paths: Vec::new(), steps: 0 };
+            from.iter().for_each(|&f| wander.on(&mut vec![f], &mut Vec::new(), 0));
+            paths = wander.paths;
+            reading.beyond_split |= paths.iter().any(|path| self.leaves_members(path, restriction, via));
+            reading.via_found |= !paths.is_empty() && !reading.beyond_split;
+        }
+        if paths.is_empty() && (kind.only || restriction.to.is_empty()) {
+            // Where the last way ends, every way on may be the wrong one.
+            for &f in &from {
+                self.follow(&mut vec![f], via, None, &mut paths);
+            }
+            reading.no_destination |= !paths.is_empty();
         }
         if paths.is_empty() {
             return None;
@@ -151,25 +304,38 @@ impl Resolver<'_> {
         }
         let mut forbidden = Vec::new();
         for path in &paths {
-            for length in 1..path.len() {
+            let last = if reading.no_destination { path.len() + 1 } else { path.len() };
+            for length in 1..last {
                 let prefix = &path[..length];
                 let on = |x: u32| paths.iter().any(|p| p.starts_with(prefix) && p.get(length) == Some(&x));
                 let end = self.network.edges[path[length - 1] as usize].to_node;
-                let others = self.leaving.at(self.network, end).iter().filter(|&&x| !on(x));
+                let others = self.leaving_at(end).iter().filter(|&&x| !on(x));
                 forbidden.extend(others.map(|&x| [prefix, &[x]].concat()));
             }
         }
         Some(forbidden)
     }
 
-    /// Follows all paths from the end of `path` over the ways `via` to an edge of `to`. Each way is driven in one
-    /// direction.
-    fn follow(&self, path: &mut Vec<u32>, via: &[i64], to: &[u32], paths: &mut Vec<Vec<u32>>) {
+    /// Whether a path uses a way that is no member.
+    fn leaves_members(&self, path: &[u32], restriction: &osm::Restriction, via: &[i64]) -> bool {
+        let member = |way: i64| [&restriction.from[..], via, &restriction.to].iter().any(|ways| ways.contains(&way));
+        path.iter().any(|&edge| !member(self.way(edge)))
+    }
+
+    /// Follows all paths from the end of `path` over the ways `via` to an edge of `to`, or to the end of the last way. Each way is
+    /// driven in one direction.
+    fn follow(&self, path: &mut Vec<u32>, via: &[i64], to: Option<&[u32]>, paths: &mut Vec<Vec<u32>>) {
         let Some(&last) = path.last() else { return };
-        let leaving = self.leaving.at(self.network, self.network.edges[last as usize].to_node);
+        let leaving = self.leaving_at(self.network.edges[last as usize].to_node);
         let Some((&way, rest)) = via.split_first() else {
-            let ends = leaving.iter().filter(|t| to.contains(t));
-            paths.extend(ends.map(|&t| [path.as_slice(), &[t]].concat()));
+            match to {
+                Some(to) => {
+                    let ends = leaving.iter().filter(|t| to.contains(t));
+                    paths.extend(ends.map(|&t| [path.as_slice(), &[t]].concat()));
+                }
+                None if self.along(last).is_none_or(|next| path.contains(&next)) => paths.push(path.clone()),
+                None => {}
+            }
             return;
         };
         let length = path.len();
@@ -194,7 +360,23 @@ impl Resolver<'_> {
             let o = &self.network.edges[other as usize];
             o.road == e.road && o.direction == e.direction && other != edge
         };
-        self.leaving.at(self.network, e.to_node).iter().find(goes_on).copied()
+        self.leaving_at(e.to_node).iter().find(goes_on).copied()
+    }
+
+    fn leaving_at(&self, node: i64) -> &[u32] {
+        self.leaving.at(self.network, node)
+    }
+
+    fn arriving_at(&self, node: i64) -> &[u32] {
+        let to = |edge: &u32| self.network.edges[*edge as usize].to_node;
+        let all = self.arriving.get_or_init(|| {
+            let mut all: Vec<u32> = (0..self.network.edges.len() as u32).collect();
+            all.sort_by_key(to);
+            all
+        });
+        let start = all.partition_point(|edge| to(edge) < node);
+        let end = start + all[start..].partition_point(|edge| to(edge) == node);
+        &all[start..end]
     }
 
     fn way(&self, edge: u32) -> i64 {
@@ -207,5 +389,70 @@ impl Resolver<'_> {
         let start = edges.partition_point(|edge| id(edge) < way);
         let end = start + edges[start..].partition_point(|edge| id(edge) == way);
         start as u32..end as u32
+    }
+}
+
+/// The edge into which `f` may go, if there is only one.
+fn alone(meant: &Meant, f: u32) -> Option<u32> {
+    let mut of_f = meant.pairs().iter().filter(|pair| pair.0 == f).map(|pair| pair.1);
+    of_f.next().filter(|_| of_f.next().is_none())
+}
+
+/// Most edges of one path that is found without an order, and most steps of the search for one restriction.
+const MOST_WANDERED: usize = 64;
+const MOST_STEPS: usize = 4096;
+/// Most edges of a path that are on no member.
+const MOST_STRAY: usize = 6;
+
+/// Finds paths over `via` ways that are listed in another order, or that were split since, so that parts of them are missing.
+struct Wander<'w, 'n> {
+    resolver: &'w Resolver<'n>,
+    via: &'w [i64],
+    to: &'w [u32],
+    paths: Vec<Vec<u32>>,
+    steps: usize,
+}
+
+impl Wander<'_, '_> {
+    /// Goes on from the end of `path`. `used` are the ways of `via` that it has been on, in order; it has `stray` edges of other ways.
+    fn on(&mut self, path: &mut Vec<u32>, used: &mut Vec<i64>, stray: usize) {
+        let Some(&last) = path.last() else { return };
+        self.steps += 1;
+        if path.len() > MOST_WANDERED || self.steps > MOST_STEPS || self.paths.len() > MOST_SEQUENCES {
+            return;
+        }
+        let (resolver, network) = (self.resolver, self.resolver.network);
+        let onward = Onward { network, leaving: resolver.leaving };
+        let end = network.edges[last as usize].to_node;
+        for &next in resolver.leaving_at(end) {
+            let way = resolver.way(next);
+            if reverse(network, last, next) || path.contains(&next) {
+                continue;
+            }
+            if self.to.contains(&next) && self.via.iter().all(|via| used.contains(via)) {
+                self.paths.push(self.cut([path.as_slice(), &[next]].concat()));
+                continue;
+            }
+            let again = used.last() == Some(&way) && way == resolver.way(last);
+            let new = self.via.contains(&way) && !used.contains(&way);
+            let strays = !self.via.contains(&way) && stray < MOST_STRAY && onward.goes_on(last, next);
+            if again || new || strays {
+                used.extend(new.then_some(way));
+                path.push(next);
+                self.on(path, used, stray + usize::from(strays));
+                path.pop();
+                if new {
+                    used.pop();
+                }
+            }
+        }
+    }
+
+    /// The path from the last edge before the `via` ways to the first edge after them.
+    fn cut(&self, path: Vec<u32>) -> Vec<u32> {
+        let on = |edge: &u32| self.via.contains(&self.resolver.way(*edge));
+        let first = path.iter().position(on).unwrap_or(1).saturating_sub(1);
+        let last = path.iter().rposition(on).map_or(path.len(), |last| last + 2).min(path.len());
+        path[first..last].to_vec()
     }
 }

@@ -47,11 +47,11 @@ pub struct Restriction {
     pub id: i64,
     /// Its rules; at least one.
     pub rules: Vec<TurnRule>,
-    /// Ways before the turn (several only with `no_entry`).
+    /// Ways before the turn. If there are none, any way may be meant.
     pub from: Vec<i64>,
     /// Nodes or ways between.
     pub via: Via,
-    /// Ways after the turn (several only with `no_exit`).
+    /// Ways after the turn. If there are none, any way may be meant.
     pub to: Vec<i64>,
 }
 
@@ -69,9 +69,9 @@ pub struct RoadArea {
 /// The members between the `from` and `to` ways of a restriction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Via {
-    /// A node. If there are several, the restriction holds at each of them.
+    /// A node. If there are several, the restriction holds at each of them. If there is none, it holds where the ways meet.
     Nodes(Vec<i64>),
-    /// Ways, driven one after the other.
+    /// Ways, driven one after the other, usually in this order.
     Ways(Vec<i64>),
 }
 

@@ -161,10 +161,14 @@ fn restriction(roads: &[Road], turn: &Turn) -> Restriction {
     for &(road, enter, leave) in &turn.between {
         via.extend(between(&roads[road], enter, leave));
     }
+    // A road may come back to the node. The name must not choose between its ends.
+    let plain = [from, to].iter().all(|road| vertices(road, turn.via).len() < 2);
+    let any = RestrictionKind { only: false, turn: RestrictedTurn::Other };
+    let kind = if plain { kind(from, to, turn) } else { any };
     let via = if turn.between.is_empty() { Via::Nodes(vec![turn.via]) } else { Via::Ways(via) };
     Restriction {
         id: from.key.of_part([u64::MAX, turn.number]),
-        rules: vec![TurnRule { kind: kind(from, to, turn), conditional: turn.conditional }],
+        rules: vec![TurnRule { kind, conditional: turn.conditional }],
         from: ways(from, &turn.arrivals),
         via,
         to: ways(to, &turn.leaving),

@@ -1,6 +1,9 @@
 //! The edge-based graph. Its states are edges that were driven to their end, and places in forbidden sequences. Its steps are
 //! movements and passages.
 //!
+//! A vehicle that has entered a road which is open to its destination only is in a second layer of states. No step leads back out
+//! of it (`through`).
+//!
 //! A separate [`Access`] says what a vehicle may use, so the same search can also find what blocks a vehicle.
 
 use std::sync::Arc;
@@ -8,7 +11,9 @@ use std::sync::Arc;
 use super::bans::{Bans, Within};
 use super::roads::Roads;
 use super::speeds::{Measure, Speeds};
+use super::through::EndsOnly;
 use crate::network::{MovementKind, Movements, Network, Passage};
+use crate::vehicle::Vehicle;
 
 /// The cost of what may not be used.
 pub const BARRED: u64 = u64::MAX;
@@ -23,6 +28,8 @@ pub struct Access {
     pub movements: Vec<u64>,
     /// One price for each passage, in the order of [`Movements::passages`].
     pub passages: Vec<u64>,
+    /// The price of passing through roads that are open to a destination only.
+    pub pass_through: u64,
 }
 
 /// Everything that a search needs besides an [`Access`].
@@ -32,6 +39,7 @@ pub struct Graph {
     costs: Vec<u64>,
     turn_cost: u64,
     bans: Bans,
+    ends_only: EndsOnly,
 }
 
 /// A state of the search: the index of an edge, or, beyond all edges, a node of the forbidden sequences.
@@ -50,12 +58,26 @@ pub(super) struct Step {
 }
 
 impl Graph {
-    /// The graph of these roads, with costs by `measure`.
+    /// The graph of these roads, with costs by `measure`. Every road is open to through traffic, unless a vehicle is named
+    /// ([`Graph::for_vehicle`]).
     #[must_use]
     pub fn new(roads: &Arc<Roads>, speeds: &Speeds, measure: Measure) -> Self {
         let network = &roads.network;
         let costs = network.edges.iter().map(|edge| speeds.cost(network, edge, measure)).collect();
-        Self { costs, turn_cost: speeds.turn_cost(measure), bans: Bans::of(network), roads: Arc::clone(roads) }
+        let (bans, ends_only) = (Bans::of(network), EndsOnly::default());
+        Self { costs, turn_cost: speeds.turn_cost(measure), bans, ends_only, roads: Arc::clone(roads) }
+    }
+
+    /// The graph for a vehicle: it does not pass through roads that are open to its destination only.
+    #[must_use]
+    pub fn for_vehicle(self, vehicle: &Vehicle) -> Self {
+        let ends_only = EndsOnly::of(&self.roads.network, vehicle);
+        Self { ends_only, ..self }
+    }
+
+    /// The roads that are open at the ends of a route only.
+    pub(super) fn ends_only(&self) -> &EndsOnly {
+        &self.ends_only
     }
 
     /// The roads, which planners share.
@@ -102,6 +124,7 @@ impl Graph {
                 .iter()
                 .map(|p| if p.forbidden.is_some() { BARRED } else { 0 })
                 .collect(),
+            pass_through: BARRED,
         }
     }
 
@@ -116,7 +139,28 @@ impl Graph {
     }
 
     pub(super) fn states(&self) -> usize {
+        if self.ends_only.is_empty() { self.layer() } else { 2 * self.layer() }
+    }
+
+    /// Number of states of each layer.
+    fn layer(&self) -> usize {
         self.network().edges.len() + self.bans.len()
+    }
+
+    /// Whether the vehicle has come from open road into roads that are open to its destination only.
+    fn inside(&self, state: State) -> bool {
+        state as usize >= self.layer()
+    }
+
+    /// The state of a vehicle that stops in this state and goes on later: where it stops is a destination.
+    pub(super) fn after_stop(&self, state: State) -> State {
+        if self.inside(state) { state - self.layer() as u32 } else { state }
+    }
+
+    /// Both states of a vehicle that arrives in the first one's edge: from open road, and from roads like it.
+    pub(super) fn arrivals(&self, state: State) -> impl Iterator<Item = State> {
+        let other = state + self.layer() as u32;
+        [state, other].into_iter().filter(|&state| (state as usize) < self.states())
     }
 
     /// The state of an edge on which a way begins.
@@ -125,12 +169,13 @@ impl Graph {
     }
 
     pub(super) fn edge_of(&self, state: State) -> u32 {
+        let state = self.after_stop(state);
         let within = (state as usize).checked_sub(self.network().edges.len());
         within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(state)
     }
 
     fn within(&self, state: State) -> Within {
-        state.saturating_sub(self.network().edges.len() as u32)
+        self.after_stop(state).saturating_sub(self.network().edges.len() as u32)
     }
 
     fn state(&self, edge: u32, within: Within) -> State {
@@ -150,22 +195,51 @@ impl Graph {
     /// All usable steps from the end of a state's edge.
     pub(super) fn steps<'g>(&'g self, access: &'g Access, state: State) -> impl Iterator<Item = Step> + 'g {
         let edge = self.edge_of(state);
-        let within = self.within(state);
+        let (within, inside) = (self.within(state), self.inside(state));
         let first = self.movements().first(edge);
         let movements = self.movements().after(edge).iter().enumerate().filter_map(move |(i, movement)| {
             let price = price(access, access.movements.get(first + i), movement.to)?;
             let next = self.bans.after(within, movement.to)?;
-            let cost = self.movement_cost(movement.kind).saturating_add(price);
-            Some(Step { next: self.state(movement.to, next), cost, passage: NO_PASSAGE })
+            let (layer, toll) = self.enter(access, inside, edge, [movement.to])?;
+            let cost = self.movement_cost(movement.kind).saturating_add(price).saturating_add(toll);
+            Some(Step { next: layer + self.state(movement.to, next), cost, passage: NO_PASSAGE })
         });
         let passages = self.movements().over(edge).filter_map(move |(place, passage)| {
             let price = price(access, access.passages.get(place), passage.to)?;
             let mut driven = passage.through.iter().chain([&passage.to]);
             let next = driven.try_fold(within, |within, &edge| self.bans.after(within, edge))?;
-            let cost = self.passage_cost(passage).saturating_add(price);
-            Some(Step { next: self.state(passage.to, next), cost, passage: place as u32 })
+            let driven = passage.through.iter().copied().chain([passage.to]);
+            let (layer, toll) = self.enter(access, inside, edge, driven)?;
+            let cost = self.passage_cost(passage).saturating_add(price).saturating_add(toll);
+            Some(Step { next: layer + self.state(passage.to, next), cost, passage: place as u32 })
         });
         movements.chain(passages)
+    }
+}
+
+impl Graph {
+    /// The first state of the layer in which a step over `driven` ends, and the price of passing through. `None` if the vehicle may not.
+    fn enter(
+        &self,
+        access: &Access,
+        mut inside: bool,
+        from: u32,
+        driven: impl IntoIterator<Item = u32>,
+    ) -> Option<(u32, u64)> {
+        if self.ends_only.is_empty() {
+            return Some((0, 0));
+        }
+        let (mut before, mut toll) = (self.ends_only.has(from), 0_u64);
+        for edge in driven {
+            let now = self.ends_only.has(edge);
+            if inside && !now {
+                (access.pass_through != BARRED).then_some(())?;
+                toll = toll.saturating_add(access.pass_through);
+            }
+            inside = now && (inside || !before);
+            before = now;
+        }
+        Some((if inside { self.layer() as u32 } else { 0 }, toll))
     }
 }
 

@@ -26,6 +26,7 @@
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
 //! | `survey` | which measurements would open most |
+//! | `through` | roads that are open at the ends of a route only |
 //! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
@@ -51,6 +52,7 @@ mod snap;
 mod speeds;
 mod stored;
 mod survey;
+mod through;
 mod turning;
 mod whole;
 
@@ -69,7 +71,9 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
-pub use report::{CONDITIONAL, PartResult, condition_members, geojson, json, obstacle_members, place, title};
+pub use report::{
+    CONDITIONAL, DestinationOnly, PartResult, condition_members, geojson, json, obstacle_members, place, title,
+};
 pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};
 #[cfg(feature = "serve")]
@@ -80,4 +84,5 @@ pub use stored::NoDriver;
 pub use survey::{
     Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
 };
+pub use through::{DESTINATION_VALUES, destination_tag, through};
 pub use turning::MadeTurns;

@@ -7,9 +7,13 @@ use super::assemble::{AssemblyError, PartKind, passes_over};
 use super::drive::Drive;
 use super::graph::{Access, BARRED};
 use super::permits::{Permit, Permits};
+use super::through::destination_tag;
 use crate::network::{Movements, Network};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::osm::rounded;
+use crate::vehicle::Vehicle;
+use crate::verdict::{ForbiddenReason, Verdict};
+use crate::words::verdict_words;
 
 /// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
 /// 2³⁶ are two years), and the prices of 100,000 of the dearest places can be added without overflow.
@@ -45,6 +49,8 @@ pub struct Obstacle {
     pub permit: Permit,
     /// Whether the place passed by itself, but a whole route failed there.
     pub refuted: bool,
+    /// Whether the road is open to a destination only, and the way passes through it. It begins with this edge.
+    pub destination_only: bool,
     /// The missing width, metres, if it is known: from the place's own certificate, or from the whole route that came nearest to
     /// passing.
     pub missing_m: Option<f64>,
@@ -118,9 +124,45 @@ pub enum Basis {
 }
 
 impl Obstacle {
+    /// A road that is open to a destination only, by its first edge on the way.
+    pub(super) fn passed_through(edge: u32, policy: Policy, permit: Permit) -> Self {
+        let at = PartKind::Edge(edge);
+        Self { at, policy, permit, refuted: false, destination_only: true, missing_m: None }
+    }
+
+    /// The words for its verdict and reason. The reason may be empty.
+    #[must_use]
+    pub fn words(&self, network: &Network, vehicle: &Vehicle) -> (&'static str, &'static str) {
+        let (verdict, reason) = verdict_words(self.permit.verdict);
+        match (self.tag(network, vehicle), self.refuted) {
+            (Some("hgv"), _) => verdict_words(Verdict::Forbidden(ForbiddenReason::Hgv)),
+            (Some(_), _) => verdict_words(Verdict::Forbidden(ForbiddenReason::Access)),
+            (None, true) => ("refuted", reason),
+            (None, false) => (verdict, reason),
+        }
+    }
+
+    /// The tags that open the road to a destination only, if the way passes through such a road here.
+    #[must_use]
+    pub fn tag(&self, network: &Network, vehicle: &Vehicle) -> Option<&'static str> {
+        let PartKind::Edge(edge) = self.at else { return None };
+        let edge = network.edges.get(edge as usize).filter(|_| self.destination_only)?;
+        destination_tag(network, edge, vehicle)
+    }
+
+    /// The edge at or after which it is.
+    pub(super) fn last_edge(&self) -> u32 {
+        match self.at {
+            PartKind::Edge(edge) | PartKind::Turn { to: edge, .. } => edge,
+        }
+    }
+
     /// What the verdict rests on.
     #[must_use]
     pub fn basis(&self, network: &Network) -> Option<Basis> {
+        if self.destination_only {
+            return None;
+        }
         let edge = |edge: u32| network.edges.get(edge as usize);
         Some(match self.at {
             PartKind::Edge(own) => {
@@ -152,9 +194,11 @@ fn price(missing_m: Option<f64>) -> u64 {
     CENTIMETRE * (PLACE + missing) as u64
 }
 
-/// The access to everything lawful. Places that are not safe, and refuted places, have a price.
+/// The access to everything lawful. Places that are not safe, refuted places, and passing through roads that are open to a destination
+/// only have a price.
 pub(super) fn priced(permits: &Permits, movements: &Movements, refuted: &[Refutation]) -> Access {
     let mut access = permits.access_at(movements, |permit| price(missing_m(permit.rsc_m)));
+    access.pass_through = price(None);
     for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
         if let Some(slot) = slot(&mut access, movements, refutation.at).filter(|slot| **slot != BARRED) {
             *slot = price(refuted_missing_m(refuted, refutation.at));
@@ -182,7 +226,7 @@ pub(super) fn on(
         let refuted_here = refuted.iter().any(|refutation| refutation.left_out && refutation.at == at);
         let missing_m = if refuted_here { refuted_missing_m(refuted, at) } else { missing_m(permit.rsc_m) };
         let policy = permits.settings.policy;
-        Some(Obstacle { at, policy, permit, refuted: refuted_here, missing_m })
+        Some(Obstacle { at, policy, permit, refuted: refuted_here, destination_only: false, missing_m })
     });
     places.collect()
 }

@@ -97,6 +97,7 @@ impl Permits {
                 .collect(),
             movements: movements.all().iter().zip(&self.movements).map(movement).collect(),
             passages: movements.passages().iter().zip(&self.passages).map(passage).collect(),
+            pass_through: BARRED,
         }
     }
 

@@ -129,7 +129,7 @@ impl Planner {
         turns: Box<dyn Turns>,
     ) -> Self {
         Self {
-            graph: Graph::new(roads, &speeds, measure),
+            graph: Graph::new(roads, &speeds, measure).for_vehicle(&driver.model.vehicle),
             snapper: Snapper::new(roads),
             access: driver.permits.access(&roads.movements),
             whole: Whole::new(roads, Arc::clone(&driver), turns),
@@ -277,9 +277,37 @@ impl Planner {
         let mut access = obstacles::priced(permits, movements, &answer.refuted);
         let found = self.way(&access, &answer.snapped)?;
         Ok(found.map(|(found, start, end)| {
-            let obstacles = obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted);
+            let mut obstacles = obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted);
+            let passed = self.passed(&found.drive, &answer.snapped);
+            if !passed.is_empty() {
+                obstacles.extend(passed);
+                let place =
+                    |obstacle: &Obstacle| found.drive.edges.iter().position(|&edge| obstacle.last_edge() == edge);
+                obstacles.sort_by_key(place);
+            }
             (obstacles, BlockedWay { edges: found.drive.edges, start, end })
         }))
+    }
+
+    /// The roads that are open to a destination only and that a way passes through.
+    fn passed(&self, drive: &Drive, snapped: &[Snapped]) -> Vec<Obstacle> {
+        let mut stops = Vec::new();
+        let mut first = 0;
+        let between = snapped.get(1..snapped.len().saturating_sub(1)).unwrap_or_default();
+        for place in between {
+            let here = |edge: &u32| place.on.iter().any(|on| on.edge == *edge);
+            if let Some(at) = drive.edges.iter().skip(first).position(here) {
+                first += at;
+                stops.push(first);
+            }
+        }
+        let runs = self.graph.ends_only().passed(&drive.edges, &stops);
+        let of_run = |run: std::ops::Range<usize>| drive.edges.get(run.start).copied();
+        let obstacle = |edge: u32| {
+            let permit = *self.driver.permits.edges.get(edge as usize)?;
+            Some(Obstacle::passed_through(edge, self.driver.permits.settings.policy, permit))
+        };
+        runs.into_iter().filter_map(of_run).filter_map(obstacle).collect()
     }
 
     /// Adds routes that differ from the earlier ones. Edges of earlier routes are made dearer until another way is cheaper.

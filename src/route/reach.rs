@@ -30,17 +30,32 @@ pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> Reach {
     let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
     let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
     let mut steps: Vec<(State, State)> = Vec::new();
-    let seen = flood(graph.states(), &first, |state, visit| {
-        for step in graph.steps(access, state) {
-            steps.push((step.next, state));
-            visit(step.next);
-        }
-    });
+    let mut flood_ahead = |first: &[State]| {
+        steps.clear();
+        flood(graph.states(), first, |state, visit| {
+            for step in graph.steps(access, state) {
+                steps.push((step.next, state));
+                visit(step.next);
+            }
+        })
+    };
+    let seen = flood_ahead(&first);
+    // The way back begins where the way there ends: that is a destination.
+    let rested = |states: &[bool]| -> Vec<State> {
+        let states = states.iter().enumerate().filter(|(_, on)| **on);
+        states.map(|(state, _)| graph.after_stop(state as State)).collect()
+    };
+    if !graph.ends_only().is_empty() {
+        flood_ahead(&rested(&seen));
+    }
     steps.sort_unstable();
-    let returning = flood(graph.states(), &first, |state, visit| {
+    let home: Vec<State> = first.iter().flat_map(|&state| graph.arrivals(state)).collect();
+    let returning = flood(graph.states(), &home, |state, visit| {
         let from = steps.partition_point(|step| step.0 < state);
         steps[from..].iter().take_while(|step| step.0 == state).for_each(|step| visit(step.1));
     });
+    let back = |(state, &there): (usize, &bool)| there && returning[graph.after_stop(state as State) as usize];
+    let returning: Vec<bool> = seen.iter().enumerate().map(back).collect();
     let edges = |states: &[bool]| {
         let mut edges = vec![false; graph.network().edges.len()];
         for (state, _) in states.iter().enumerate().filter(|(_, on)| **on) {
@@ -93,18 +108,24 @@ pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
 }
 
 /// The strongly connected components of the usable edges (Tarjan 1972, without recursion). Restrictions over ways are ignored,
-/// so a component may be a little too large.
+/// so a component may be a little too large. Roads that are open to a destination only join no other roads.
 #[must_use]
 pub fn components(graph: &Graph, access: &Access) -> Components {
     let edges = graph.network().edges.len();
     let usable = |edge: u32| access.edges[edge as usize] != BARRED;
     let next = |edge: u32| {
         let first = graph.movements().first(edge);
+        let ends_only = graph.ends_only();
         let movements = graph.movements().after(edge).iter().enumerate().filter_map(move |(i, movement)| {
-            (access.movements[first + i] != BARRED && usable(movement.to)).then_some(movement.to)
+            let open = access.movements[first + i] != BARRED && !ends_only.leads_out([edge, movement.to]);
+            (open && usable(movement.to)).then_some(movement.to)
         });
-        let open = move |place: usize, to: u32| access.passages[place] != BARRED && usable(to);
-        movements.chain(graph.movements().over(edge).filter_map(move |(place, p)| open(place, p.to).then_some(p.to)))
+        let passages = graph.movements().over(edge).filter_map(move |(place, p)| {
+            let driven = [edge].into_iter().chain(p.through.iter().copied()).chain([p.to]);
+            let open = access.passages[place] != BARRED && !ends_only.leads_out(driven);
+            (open && usable(p.to)).then_some(p.to)
+        });
+        movements.chain(passages)
     };
     const NEW: u32 = u32::MAX;
     let (mut number, mut low, mut on_stack) = (vec![NEW; edges], vec![0_u32; edges], vec![false; edges]);

@@ -8,11 +8,13 @@ use super::assemble::{PartKind, passes_over};
 use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::{Answer, Route};
+use super::through::destination_tag;
 use crate::corridor::FrameError;
 use crate::network::{Network, PassageKind};
 use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
+use crate::vehicle::Vehicle;
 use crate::words::{Named, verdict_words};
 
 /// The verdict of a route that is certified only under conditions. It is no verdict of a certificate by itself.
@@ -30,6 +32,19 @@ pub struct PartResult {
     /// The least leeway of any body on the part, metres, after all bounds are deducted, with at most the tracking tolerance of
     /// the whole route's certificate. It is never below the whole route's RSC. `None` if no body passes the part.
     pub rsc_m: Option<f64>,
+}
+
+/// A stretch of a route on a road that is open to its destination only.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DestinationOnly {
+    /// The road.
+    pub title: String,
+    /// The tags that say so.
+    pub tag: &'static str,
+    /// Beginning, metres from the route's beginning.
+    pub from_m: f64,
+    /// End, metres from the route's beginning.
+    pub to_m: f64,
 }
 
 impl Route {
@@ -61,6 +76,28 @@ impl Route {
         let wider = part.start.saturating_sub(near)..(part.end + near).min(corridor.len());
         let meets = |heads: &Range<usize>| heads.start < wider.end && heads.end > wider.start;
         if corridor.areas.iter().any(|span| meets(&span.heads)) { wider } else { part.clone() }
+    }
+
+    /// The stretches on roads that are open to a destination only, each with the tags that say so.
+    #[must_use]
+    pub fn destination_only(&self, network: &Network, vehicle: &Vehicle) -> Vec<DestinationOnly> {
+        let spacing_m = self.path.corridor.spacing_m;
+        let mut stretches: Vec<DestinationOnly> = Vec::new();
+        for part in &self.path.parts {
+            let PartKind::Edge(no) = part.kind else { continue };
+            let Some(edge) = network.edges.get(no as usize) else { continue };
+            let Some(tag) = destination_tag(network, edge, vehicle) else { continue };
+            let from_m = part.stations.start as f64 * spacing_m;
+            let to_m = part.stations.end.saturating_sub(1) as f64 * spacing_m;
+            let title = network.title(edge);
+            match stretches.last_mut() {
+                Some(last) if last.title == title && last.tag == tag && from_m - last.to_m <= spacing_m => {
+                    last.to_m = to_m
+                }
+                _ => stretches.push(DestinationOnly { title, tag, from_m, to_m }),
+            }
+        }
+        stretches
     }
 
     /// The part with the least leeway of the whole route.
@@ -136,6 +173,12 @@ fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
         "limiting_unit_name": model.vehicle.units.get(result.limiting.unit).map(|unit| unit.name.as_str()),
         "limiting_side": result.limiting.side.name(),
         "limiting_at": route.limiting().map(|at| title(network, at)),
+        "destination_only": route.destination_only(network, &model.vehicle).iter().map(|stretch| json!({
+            "title": stretch.title,
+            "tag": stretch.tag,
+            "from_m": stretch.from_m,
+            "to_m": stretch.to_m,
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -151,18 +194,20 @@ fn conditional_part_members(network: &Network, part: &PartResult) -> Value {
 
 /// The members of an obstacle.
 #[must_use]
-pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
-    let (verdict, reason) = verdict_words(obstacle.permit.verdict);
+pub fn obstacle_members(network: &Network, vehicle: &Vehicle, obstacle: &Obstacle) -> Value {
+    let (verdict, reason) = obstacle.words(network, vehicle);
     let (width_source, kerb_assumed) = match obstacle.basis(network) {
         Some(Basis::Width(source)) => (source.map(WidthSource::name), None),
         Some(Basis::Kerb { assumed }) => (None, Some(assumed)),
         Some(Basis::Area) | None => (None, None),
     };
     let own = json!({
-        "verdict": if obstacle.refuted { "refuted" } else { verdict },
+        "verdict": verdict,
         "reason": (!reason.is_empty()).then_some(reason),
         "rsc_m": obstacle.permit.rsc_m,
         "missing_m": obstacle.missing_m,
+        "destination_only": obstacle.destination_only,
+        "tag": obstacle.tag(network, vehicle),
         "width_source": width_source,
         "kerb_assumed": kerb_assumed,
         "place": place(network, obstacle.at),
@@ -241,7 +286,7 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
         "places": snapped.collect::<Vec<_>>(),
         "refuted": answer.refuted.iter().map(|r| refutation_members(network, r)).collect::<Vec<_>>(),
         "gave_up": answer.gave_up,
-        "obstacles": answer.obstacles.as_ref().map(|all| all.iter().map(|o| obstacle_members(network, o)).collect::<Vec<_>>()),
+        "obstacles": answer.obstacles.as_ref().map(|all| all.iter().map(|o| obstacle_members(network, &model.vehicle, o)).collect::<Vec<_>>()),
     })
 }
 
@@ -292,7 +337,7 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
         features.push(json!({
             "type": "Feature",
             "geometry": {"type": "Point", "coordinates": place(network, obstacle.at)},
-            "properties": with(json!({"vehicle_id": model.vehicle.id}), obstacle_members(network, obstacle)),
+            "properties": with(json!({"vehicle_id": model.vehicle.id}), obstacle_members(network, &model.vehicle, obstacle)),
         }));
     }
     Ok(json!({"type": "FeatureCollection", "features": features}))

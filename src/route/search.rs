@@ -231,7 +231,7 @@ pub fn search_over(
                 edge: goal.edge,
                 share: goal.share,
                 cost: found.cost.saturating_sub(paid),
-                state: Some(found.state),
+                state: Some(graph.after_stop(found.state)),
             };
             next.push((start, drive, first[found.start], found));
         }

@@ -25,6 +25,8 @@ pub enum RestrictedTurn {
     Entry,
     /// `exit`
     Exit,
+    /// Any other word, such as `turn`. It names no side.
+    Other,
 }
 
 /// `no_…` forbids the movement, `only_…` forbids all others.
@@ -54,10 +56,50 @@ pub enum NoRule {
     OtherVehicles,
     /// `except=hgv` or a similar exemption.
     Exempt,
+    /// It forbids turns at a red light only, such as `no_right_turn_on_red`.
+    OnRed,
 }
 
-/// Keys `restriction:…` that include heavy goods vehicles. Any vehicle here may pull a trailer.
-const VEHICLES: [&str; 6] = ["vehicle", "motor_vehicle", "hgv", "hgv_articulated", "goods", "trailer"];
+/// Keys `restriction:…` that do not concern heavy goods vehicles. A word that is not here may mean them.
+const OTHERS: [&str; 37] = [
+    "agricultural",
+    "atv",
+    "auto_rickshaw",
+    "bicycle",
+    "bus",
+    "caravan",
+    "cargo_bike",
+    "carpool",
+    "carriage",
+    "coach",
+    "cycle_rickshaw",
+    "electric_bicycle",
+    "emergency",
+    "foot",
+    "golf_cart",
+    "hazmat",
+    "horse",
+    "hov",
+    "inline_skates",
+    "kick_scooter",
+    "light_rail",
+    "minibus",
+    "mofa",
+    "moped",
+    "motorcar",
+    "motorcycle",
+    "motorhome",
+    "psv",
+    "share_taxi",
+    "ski",
+    "small_electric_vehicle",
+    "snowmobile",
+    "speed_pedelec",
+    "taxi",
+    "tourist_bus",
+    "tram",
+    "trolleybus",
+];
 /// Values of `except` that exempt heavy goods vehicles.
 const EXEMPTING: [&str; 3] = ["vehicle", "motor_vehicle", "hgv"];
 /// Older tags that limit a restriction to certain times.
@@ -68,16 +110,19 @@ const TIMES: [&str; 4] = ["day_on", "day_off", "hour_on", "hour_off"];
 #[must_use]
 pub fn turn_rules(tags: &Tags<'_>) -> Option<Result<Vec<TurnRule>, NoRule>> {
     let of = |key: &str| tags.iter().find(|tag| tag.0 == key).map(|tag| tag.1);
-    let kind = of("type")?;
     // The older `type=restriction:hgv` names the vehicle in the type.
+    let kind = of("type")?.trim().to_ascii_lowercase();
     let scope = if kind == "restriction" { "" } else { kind.strip_prefix("restriction:")? };
     let timed = tags.iter().any(|tag| TIMES.contains(&tag.0));
-    let exempt = of("except").is_some_and(|list| list.split(';').any(|who| EXEMPTING.contains(&who.trim())));
+    let exempts = |who: &str| EXEMPTING.contains(&who.trim().to_ascii_lowercase().as_str());
+    let exempt = of("except").is_some_and(|list| list.split(';').any(exempts));
     let mut rules = Vec::new();
-    let (mut known, mut exempted) = (false, false);
+    let (mut known, mut exempted, mut on_red) = (false, false, false);
     for &(key, value) in tags {
-        let Some(key) = Key::parse(key, scope) else { continue };
-        for (kind, undecided) in kinds(value, key.conditional) {
+        let Some(key) = Key::parse(&key.to_ascii_lowercase(), scope) else { continue };
+        let (red, value) = without_red(value);
+        on_red |= red;
+        for (kind, undecided) in kinds(&value, key.conditional) {
             known = true;
             match key.whom {
                 Whom::Others => {}
@@ -93,6 +138,7 @@ pub fn turn_rules(tags: &Tags<'_>) -> Option<Result<Vec<TurnRule>, NoRule>> {
     rules.dedup_by_key(|rule| rule.kind);
     Some(match (rules.is_empty(), known, exempted) {
         (false, ..) => Ok(rules),
+        (true, false, _) if on_red => Err(NoRule::OnRed),
         (true, false, _) => Err(NoRule::Unknown),
         (true, true, true) => Err(NoRule::Exempt),
         (true, true, false) => Err(NoRule::OtherVehicles),
@@ -122,36 +168,71 @@ impl Key {
         };
         let whom = match vehicle {
             "" => Whom::All,
-            vehicle if VEHICLES.contains(&vehicle) => Whom::HeavyGoods,
-            _ => Whom::Others,
+            vehicle if OTHERS.contains(&vehicle) => Whom::Others,
+            _ => Whom::HeavyGoods,
         };
         Some(Self { whom, conditional })
     }
 }
 
-/// The known kinds of a value, each with whether its condition is undecided. Dangerous goods are not modelled.
+/// A value without its clauses about red lights, in lower case, and whether there were any.
+fn without_red(value: &str) -> (bool, String) {
+    let value = value.to_ascii_lowercase();
+    let about_red = |clause: &&str| {
+        let kind = clause.split('@').next().unwrap_or_default().trim().replace([' ', '-'], "_");
+        kind.starts_with("no_") && kind.ends_with("_on_red")
+    };
+    if value.contains('@') || !value.split(';').any(|clause| about_red(&clause)) {
+        return (false, value);
+    }
+    let rest: Vec<&str> = value.split(';').filter(|clause| !about_red(clause)).collect();
+    (true, rest.join(";"))
+}
+
+/// The kinds of a value in lower case, each with whether its condition is undecided.
 fn kinds(value: &str, conditional: bool) -> impl Iterator<Item = (RestrictionKind, bool)> + '_ {
     clauses(value)
-        .filter(|(_, condition)| !condition.contains("hazmat"))
+        .filter(|(_, condition)| !dangerous_goods_only(condition))
         .filter_map(move |(kind, condition)| Some((parse_kind(kind)?, conditional || !condition.is_empty())))
 }
 
+/// Whether a condition holds for dangerous goods only. These are not modelled.
+fn dangerous_goods_only(condition: &str) -> bool {
+    let part = |part: &str| {
+        let part = part.trim_matches(|c: char| c.is_whitespace() || "()".contains(c));
+        part == "hazmat" || part.starts_with("hazmat:") && !part.contains(' ')
+    };
+    !condition.contains(" or ") && condition.split(" and ").any(part)
+}
+
+/// The kind of a value in lower case. A word that is not known forbids what its members say; it has a side if it names exactly one.
 fn parse_kind(text: &str) -> Option<RestrictionKind> {
+    let text = text.trim().replace([' ', '-'], "_");
     let (only, turn) = match (text.strip_prefix("no_"), text.strip_prefix("only_")) {
         (Some(turn), _) => (false, turn),
         (_, Some(turn)) => (true, turn),
         (None, None) => return None,
     };
     let turn = match turn {
-        "left_turn" => RestrictedTurn::LeftTurn,
-        "right_turn" => RestrictedTurn::RightTurn,
-        "straight_on" => RestrictedTurn::StraightOn,
-        "u_turn" => RestrictedTurn::UTurn,
         "entry" => RestrictedTurn::Entry,
         "exit" => RestrictedTurn::Exit,
-        _ => return None,
+        turn => side(turn),
     };
     Some(RestrictionKind { only, turn })
+}
+
+fn side(turn: &str) -> RestrictedTurn {
+    let sides = [
+        (["left", "left"], RestrictedTurn::LeftTurn),
+        (["right", "right"], RestrictedTurn::RightTurn),
+        (["straight", "ahead"], RestrictedTurn::StraightOn),
+        (["u_turn", "uturn"], RestrictedTurn::UTurn),
+    ];
+    let mut named = sides.iter().filter(|(words, _)| words.iter().any(|word| turn.contains(word)));
+    match (named.next(), named.next()) {
+        (Some(&(_, side)), None) => side,
+        _ => RestrictedTurn::Other,
+    }
 }
 
 impl RestrictionKind {
@@ -165,6 +246,7 @@ impl RestrictionKind {
             RestrictedTurn::UTurn => "u_turn",
             RestrictedTurn::Entry => "entry",
             RestrictedTurn::Exit => "exit",
+            RestrictedTurn::Other => "turn",
         };
         format!("{}_{turn}", if self.only { "only" } else { "no" })
     }
@@ -221,8 +303,63 @@ mod tests {
     }
 
     #[test]
-    fn a_value_nobody_knows_is_no_rule() {
-        assert_eq!(rules(&[IS, ("restriction", "no_parking")]), Err(NoRule::Unknown));
+    fn other_spellings_are_read() {
+        let table = [
+            ("No_Left_Turn", "no_left_turn"),
+            ("NO_U_TURN", "no_u_turn"),
+            ("no_u-turn", "no_u_turn"),
+            ("no_uturn", "no_u_turn"),
+            (" no left turn ", "no_left_turn"),
+            ("Only_Straight", "only_straight_on"),
+            ("no_left", "no_left_turn"),
+            ("no_turn", "no_turn"),
+            ("only_turn", "only_turn"),
+            ("no_left_u_turn", "no_turn"),
+            ("no_anything_else", "no_turn"),
+            ("only_bend", "only_turn"),
+            ("no_left_turn;no_straight_on", "no_left_turn no_straight_on"),
+            ("no_left_turn ; no_right_turn_on_red", "no_left_turn"),
+        ];
+        for (value, expected) in table {
+            assert_eq!(rules(&[IS, ("restriction", value)]).unwrap().join(" "), expected, "{value}");
+        }
+        assert_eq!(rules(&[("type", "Restriction"), ("Restriction:HGV", "No_Entry")]).unwrap(), ["no_entry"]);
+        for value in ["no_right_turn_on_red", "no_left_turn_on_red", "No_Turn_On_Red"] {
+            assert_eq!(rules(&[IS, ("restriction", value)]), Err(NoRule::OnRed), "{value}");
+        }
+    }
+
+    #[test]
+    fn vehicles_that_nobody_knows_may_be_heavy_goods_vehicles() {
+        for vehicle in ["hgv", "hgv_articulated", "goods", "trailer", "roadtrain", "lhv", "bdouble", "something"] {
+            let key = format!("restriction:{vehicle}");
+            assert_eq!(rules(&[IS, (&key, "no_left_turn")]).unwrap(), ["no_left_turn"], "{vehicle}");
+        }
+        for vehicle in OTHERS {
+            let key = format!("restriction:{vehicle}");
+            assert_eq!(rules(&[IS, (&key, "no_left_turn")]), Err(NoRule::OtherVehicles), "{vehicle}");
+        }
+    }
+
+    #[test]
+    fn conditions_on_dangerous_goods_do_not_concern_the_vehicles_here() {
+        let at = |condition: &str| {
+            let value = format!("no_left_turn @ ({condition})");
+            rules(&[IS, ("restriction:conditional", &value)])
+        };
+        for condition in ["hazmat", "hazmat:water", "hazmat AND 22:00-06:00"] {
+            assert_eq!(at(condition), Err(NoRule::Unknown), "{condition}");
+        }
+        for condition in ["hazmat OR weight>7.5", "not hazmat", "weight>3.5", "Mo-Fr 07:00-09:00", "wet"] {
+            assert_eq!(at(condition).unwrap(), ["no_left_turn?"], "{condition}");
+        }
+    }
+
+    #[test]
+    fn a_value_that_forbids_no_turn_is_no_rule() {
+        for value in ["no", "none", "yes", "give_way", "left_turn", "noleftturn"] {
+            assert_eq!(rules(&[IS, ("restriction", value)]), Err(NoRule::Unknown), "{value}");
+        }
         assert_eq!(rules(&[IS]), Err(NoRule::Unknown));
         assert_eq!(rules(&[IS, ("restriction:conditional", "no_exit @ (hazmat)")]), Err(NoRule::Unknown));
     }

@@ -117,7 +117,10 @@ impl ReadAccount {
         row("relation", "left_out", "not_a_restriction", relations.read - relations.restrictions);
         row("relation", "left_out", "other_vehicles", relations.other_vehicles);
         row("relation", "left_out", "restriction_broken", relations.broken_restrictions);
+        row("relation", "left_out", "restriction_on_red", relations.on_red);
+        row("relation", "left_out", "restriction_unknown", relations.unknown_restrictions);
         row("relation", "noted", "restriction", relations.restrictions);
+        row("relation", "noted", "restriction_incomplete", relations.incomplete_restrictions);
         row("relation", "noted", "restriction_off_road", relations.restrictions_off_road);
         let BackdropTally { kept, incomplete, too_small, off_file } = self.backdrop;
         if self.backdrop.read() > 0 {

@@ -16,17 +16,22 @@ use super::{
     wire::{self, Shape},
 };
 
-/// Counts of relations: `read = kept + (read − restrictions) + broken_restrictions + other_vehicles + exempt +
-/// superseded`.
+/// Counts of relations: `read = kept + (read − restrictions) + broken_restrictions + unknown_restrictions + on_red +
+/// other_vehicles + exempt + superseded`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RelationTally {
     /// All relations.
     pub read: u64,
     /// Turn restrictions. Nothing else is used.
     pub restrictions: u64,
-    /// Restrictions that lack a way `from`, a way `to` or any `via`, that are of an unknown kind, or that are their own
-    /// member.
+    /// Restrictions whose members do not say which turns they mean, or that are their own member.
     pub broken_restrictions: u64,
+    /// Restrictions without a value that begins with `no_` or `only_`.
+    pub unknown_restrictions: u64,
+    /// Whole restrictions of turns at red lights.
+    pub on_red: u64,
+    /// Kept restrictions that lack one member, so that more than one turn may be meant.
+    pub incomplete_restrictions: u64,
     /// Whole restrictions that concern only vehicles other than heavy goods vehicles.
     pub other_vehicles: u64,
     /// Whole restrictions that exempt heavy goods vehicles.
@@ -42,6 +47,9 @@ impl RelationTally {
         self.read += other.read;
         self.restrictions += other.restrictions;
         self.broken_restrictions += other.broken_restrictions;
+        self.unknown_restrictions += other.unknown_restrictions;
+        self.on_red += other.on_red;
+        self.incomplete_restrictions += other.incomplete_restrictions;
         self.other_vehicles += other.other_vehicles;
         self.exempt += other.exempt;
         self.superseded += other.superseded;
@@ -51,7 +59,8 @@ impl RelationTally {
     /// Restrictions in the extract.
     #[must_use]
     pub fn kept(&self) -> u64 {
-        self.restrictions - self.broken_restrictions - self.other_vehicles - self.exempt - self.superseded
+        let unread = self.broken_restrictions + self.unknown_restrictions;
+        self.restrictions - unread - self.on_red - self.other_vehicles - self.exempt - self.superseded
     }
 }
 
@@ -130,14 +139,23 @@ pub(super) fn read(
     batch.tally.read += 1;
     let Some(rules) = turn_rules(&tags) else { return Ok(()) };
     batch.tally.restrictions += 1;
-    if !members.complete() || rules == Err(NoRule::Unknown) {
+    if rules == Err(NoRule::Unknown) {
+        batch.tally.unknown_restrictions += 1;
+        return Ok(());
+    }
+    let only = rules.as_ref().is_ok_and(|rules| rules.iter().any(|rule| rule.kind.only));
+    if !members.understood(only) {
         batch.tally.broken_restrictions += 1;
         return Ok(());
     }
     batch.vias.extend(members.via_nodes.last());
     match rules {
-        Ok(rules) => batch.restrictions.push(members.restriction(relation.id(), rules)),
+        Ok(rules) => {
+            batch.tally.incomplete_restrictions += u64::from(!members.complete());
+            batch.restrictions.push(members.restriction(relation.id(), rules));
+        }
         Err(NoRule::Exempt) => batch.tally.exempt += 1,
+        Err(NoRule::OnRed) => batch.tally.on_red += 1,
         Err(NoRule::OtherVehicles | NoRule::Unknown) => batch.tally.other_vehicles += 1,
     }
     Ok(())
@@ -156,6 +174,8 @@ struct Members {
 impl Members {
     fn of(relation: &Relation, strings: &Strings<'_>, object: ObjectId) -> Result<Self, Problem> {
         let mut found = Self::default();
+        // Nodes that stand for a missing `via`, the better ones first.
+        let mut hints: [Vec<i64>; 2] = Default::default();
         let mut member = 0;
         for ((&difference, kind), &role) in relation.memids.iter().zip(&relation.types).zip(&relation.roles_sid) {
             super::block::add(&mut member, difference, object, "a member")?;
@@ -163,21 +183,39 @@ impl Members {
                 .enum_value()
                 .map_err(|kind| Problem::Message { what: "relation", detail: format!("member of type {kind}") })?;
             // A negative index is out of range of any table.
-            match strings.text(role as u64, object)? {
-                "from" if kind == MemberType::WAY => found.from.push(member),
-                "to" if kind == MemberType::WAY => found.to.push(member),
-                "via" if kind == MemberType::NODE => found.via_nodes.push(member),
-                "via" if kind == MemberType::WAY => found.via_ways.push(member),
+            match (strings.text(role as u64, object)?.trim().to_ascii_lowercase().as_str(), kind) {
+                ("from", MemberType::WAY) => found.from.push(member),
+                ("to", MemberType::WAY) => found.to.push(member),
+                ("via", MemberType::NODE) => found.via_nodes.push(member),
+                ("via", MemberType::WAY) => found.via_ways.push(member),
+                ("intersection", MemberType::NODE) => hints[0].push(member),
+                ("location_hint", MemberType::NODE) => hints[1].push(member),
                 _ => {}
             }
             found.itself |= kind == MemberType::RELATION && member == relation.id();
         }
+        if !found.has_via() {
+            found.via_nodes = hints.into_iter().find(|nodes| !nodes.is_empty()).unwrap_or_default();
+        }
         Ok(found)
     }
 
+    fn has_via(&self) -> bool {
+        !self.via_nodes.is_empty() || !self.via_ways.is_empty()
+    }
+
     fn complete(&self) -> bool {
-        let via = !self.via_nodes.is_empty() || !self.via_ways.is_empty();
-        via && !self.from.is_empty() && !self.to.is_empty() && !self.itself
+        self.has_via() && !self.from.is_empty() && !self.to.is_empty()
+    }
+
+    /// Whether the members say which turns are meant, or at least among which. A missing `via` is where the others meet. Without
+    /// `from` nobody knows whom an `only_…` concerns.
+    fn understood(&self, only: bool) -> bool {
+        let two = match (self.from.is_empty(), self.has_via(), self.to.is_empty()) {
+            (true, true, false) => !only && self.via_ways.is_empty(),
+            (from, via, to) => !from && (via || !to),
+        };
+        two && !self.itself
     }
 
     fn restriction(self, id: i64, rules: Vec<TurnRule>) -> Restriction {

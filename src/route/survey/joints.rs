@@ -7,7 +7,9 @@ use crate::route::conditions::{edge_price, turn_price};
 use crate::route::obstacles::CENTIMETRE;
 use crate::route::permits::{Permit, Permits};
 use crate::route::roads::Roads;
+use crate::route::through::EndsOnly;
 use crate::turns::TurnFacts;
+use crate::vehicle::Vehicle;
 
 /// Something that is open or not: an edge, or, beyond all edges, a movement and then a passage.
 pub(super) type Item = u32;
@@ -38,10 +40,12 @@ pub(super) struct Joints {
     of_item: Vec<u32>,
     /// By item: a number for each junction, and for each piece of road with its two directions.
     places: Vec<u32>,
+    /// Roads that join no other roads.
+    ends_only: EndsOnly,
 }
 
 impl Joints {
-    pub(super) fn of(roads: &Roads) -> Self {
+    pub(super) fn of(roads: &Roads, vehicle: &Vehicle) -> Self {
         let (network, movements) = (&roads.network, &roads.movements);
         let edges = network.edges.len();
         let (all, passages) = (movements.all(), movements.passages());
@@ -66,7 +70,8 @@ impl Joints {
         for (place, step) in (0_u32..).zip(&steps) {
             of_item[step.item as usize - edges] = place;
         }
-        Self { edges, after, into, before, of_item, places: places(network, roads), steps }
+        let (places, ends_only) = (places(network, roads), EndsOnly::of(network, vehicle));
+        Self { edges, after, into, before, of_item, places, ends_only, steps }
     }
 
     /// Number of edges.
@@ -123,11 +128,18 @@ impl Joints {
         let edges = (0..).zip(&permits.edges).map(|(i, permit)| cm(permit, &|permit| edge_price(network, i, permit)));
         let of_turns = movements.all().iter().zip(&permits.movements).map(|(movement, permit)| {
             let barred = movement.forbidden.is_some() || movement.kind == MovementKind::UTurn;
-            if barred { CLOSED } else { cm(permit, &turn_price) }
+            if barred || self.ends_only.leads_out([movement.from, movement.to]) {
+                CLOSED
+            } else {
+                cm(permit, &turn_price)
+            }
         });
         let of_passages = movements.passages().iter().zip(&permits.passages);
-        let of_passages = of_passages
-            .map(|(passage, permit)| if passage.forbidden.is_some() { CLOSED } else { cm(permit, &turn_price) });
+        let of_passages = of_passages.map(|(passage, permit)| {
+            let driven = [passage.from].into_iter().chain(passage.through.iter().copied()).chain([passage.to]);
+            let barred = passage.forbidden.is_some() || self.ends_only.leads_out(driven);
+            if barred { CLOSED } else { cm(permit, &turn_price) }
+        });
         edges.chain(of_turns).chain(of_passages).collect()
     }
 

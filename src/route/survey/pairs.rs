@@ -76,7 +76,7 @@ pub fn survey_pairs(
     }
     reporter.end();
     let roads = std::sync::Arc::clone(planner.roads());
-    let joints = Joints::of(&roads);
+    let joints = Joints::of(&roads, &planner.driver().model.vehicle);
     let mut needed: BTreeMap<Spot, f64> = BTreeMap::new();
     for condition in wanted.iter().flat_map(|wanted| &wanted.conditions) {
         for spot in spots(condition) {

@@ -34,7 +34,7 @@ pub fn survey_region(
     (reporter, stop): (&dyn Reporter, &Stop),
 ) -> Result<Survey, Stopped> {
     stop.check()?;
-    let joints = Joints::of(roads);
+    let joints = Joints::of(roads, &driver.model.vehicle);
     let lengths_m: Vec<f64> = roads.network.edges.iter().map(|edge| roads.network.length_m(edge)).collect();
     let prices = joints.prices(roads, &driver.permits);
     let certified = (0..).zip(&lengths_m).filter(|(edge, _)| driver.permits.edge(*edge));
@@ -83,7 +83,7 @@ fn anchor(
     if let Some(edge) = usable.max_by(|a, b| length_m(a).total_cmp(&length_m(b))) {
         return Some(edge);
     }
-    let graph = Graph::new(roads, speeds, Measure::Distance);
+    let graph = Graph::new(roads, speeds, Measure::Distance).for_vehicle(&driver.model.vehicle);
     let components = components(&graph, &driver.permits.access(&roads.movements));
     components.of.iter().position(|of| *of == Some(0)).map(|edge| edge as u32)
 }
