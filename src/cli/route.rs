@@ -8,12 +8,12 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use netcert::certificate;
 use netcert::corridor::FileCorridor;
-use netcert::network::{Network, PassageKind};
+use netcert::network::{DESTINATION_VALUES, Network, PassageKind};
 use netcert::picture;
 use netcert::region::Region;
 use netcert::route::{
-    self, Answer, Comparison, Conditional, DESTINATION_VALUES, Measure, PartKind, PartResult, Peer, Planner, Position,
-    Question, Route as Found,
+    self, Answer, Comparison, Conditional, Measure, PartKind, PartResult, Peer, Planner, Position, Question,
+    Route as Found,
 };
 use netcert::stop::Stop;
 use netcert::words::Named;

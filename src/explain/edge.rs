@@ -9,12 +9,13 @@ use super::tightest::{HingePlace, Place};
 use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
-use crate::network::{Edge, Network, Stroke};
+use crate::network::{Edge, Network, Stroke, destination_tag};
 use crate::osm::facts::Policy;
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
+use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
 use crate::words::{highway, verdict_words};
 
@@ -32,7 +33,7 @@ pub fn explain_edge(
     stop.check()?;
     let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
     let conflict = Conflict::of(network, facts, &model.vehicle);
-    let road = road_facts(network, facts, settings.policy);
+    let road = road_facts(network, facts, settings.policy, &model.vehicle);
     let case = Case::of(network, edge, settings);
     stop.check()?;
     let (geometry, unknown) = match &case {
@@ -211,7 +212,7 @@ fn other_strips(
     strips
 }
 
-fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
+fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle) -> RoadFacts {
     let road = network.road(edge);
     let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
     let section = network.section(edge);
@@ -227,6 +228,7 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
         title: network.title(edge),
         policy,
         width_source: section.strip(policy).map(|strip| strip.source),
+        destination_tag: destination_tag(network, edge, vehicle),
         line: network.positions(edge).collect(),
     }
 }

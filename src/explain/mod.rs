@@ -79,6 +79,8 @@ pub struct Explanation {
 /// Roads of a turn that its sentences name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TurnRoads {
+    /// The restriction that bans the turn, such as `no_left_turn, relation 9601`.
+    pub restriction: Option<String>,
     /// The road that forbids the turn or makes it unknown. `None` if the turn itself decides.
     pub decides: Option<String>,
     /// Roads before and after the turn that the vehicle may not use, each with its verdict. The turn then has their verdict in a
@@ -105,6 +107,8 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// The tags that open the road to a destination only.
+    pub destination_tag: Option<&'static str>,
     /// The map's line in driving direction.
     pub line: Vec<LonLat>,
 }

@@ -168,7 +168,9 @@ fn roads_that_decide(
     own: Verdict,
     stop: &Stop,
 ) -> Result<(TurnRoads, Option<Conflict>), Stopped> {
-    let mut named = TurnRoads { decides: None, refused: Vec::new() };
+    let banning = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
+    let restriction = banning.map(|ban| format!("{}, relation {}", ban.kind.name(), ban.relation_id));
+    let mut named = TurnRoads { restriction, decides: None, refused: Vec::new() };
     let edges = [facts.movement.from].into_iter().chain(facts.through.iter().copied()).chain([facts.movement.to]);
     if let Verdict::Forbidden(ForbiddenReason::Restriction) = own {
         return Ok((named, None));

@@ -5,6 +5,7 @@ use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
 use super::{Explanation, Geometry, HingePlace, Part, Place};
 use crate::corridor::{Taper, TaperCause};
+use crate::network::DESTINATION_VALUES;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::verdict_words;
@@ -52,7 +53,14 @@ pub fn words(e: &Explanation) -> Words {
         (_, None) => Vec::new(),
     };
     reasons.extend(e.turn.as_ref().and_then(|turn| refused(&turn.refused)));
+    reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag).map(destination_only));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
+}
+
+fn destination_only(tag: &str) -> String {
+    format!(
+        "Only for vehicles whose journey begins or ends there ({tag} = {DESTINATION_VALUES}): no route passes through."
+    )
 }
 
 /// The RSC, or −∞ if there is none.
@@ -209,7 +217,9 @@ fn on_road(e: &Explanation) -> String {
 
 fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
     if reason == ForbiddenReason::Restriction {
-        return "forbidden: a restriction on the map bans this turn".to_owned();
+        let banning = e.turn.as_ref().and_then(|turn| turn.restriction.as_ref());
+        let which = banning.map_or(String::new(), |banning| format!(" ({banning})"));
+        return format!("forbidden: a restriction on the map bans this turn{which}");
     }
     let on = on_road(e);
     let Some(c) = &e.conflict else {

@@ -30,6 +30,7 @@ mod sides;
 mod site;
 mod splits;
 mod stroke;
+mod through;
 mod title;
 mod vertices;
 mod ways;
@@ -54,6 +55,7 @@ pub use site::Site;
 pub(crate) use site::{Pieces, pieces};
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
+pub use through::{DESTINATION_VALUES, destination_tag, through};
 pub use title::Ends;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};

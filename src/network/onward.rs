@@ -18,7 +18,7 @@ pub(super) struct Onward<'n> {
 
 impl Onward<'_> {
     /// The edges that arrive at a node on the road that goes on from a way's edges.
-    pub(super) fn to_node(&self, edges: &Range<u32>, node: i64) -> Vec<u32> {
+    pub(super) fn arriving_at(&self, edges: &Range<u32>, node: i64) -> Vec<u32> {
         let mut found = Vec::new();
         for edge in edges.clone() {
             self.walk(edge, &mut |next| {
@@ -33,7 +33,7 @@ impl Onward<'_> {
     }
 
     /// The edges that leave a node on a road that goes on into a way's edges.
-    pub(super) fn from_node(&self, node: i64, edges: &Range<u32>) -> Vec<u32> {
+    pub(super) fn leaving_node(&self, node: i64, edges: &Range<u32>) -> Vec<u32> {
         let leads_there = |&first: &u32| {
             let mut there = false;
             self.walk(first, &mut |next| {

@@ -217,7 +217,7 @@ impl Resolver<'_> {
                     continue;
                 }
                 let found = |&node: &i64| {
-                    if leave { onward.from_node(node, &edges) } else { onward.to_node(&edges, node) }
+                    if leave { onward.leaving_node(node, &edges) } else { onward.arriving_at(&edges, node) }
                 };
                 own = nodes.iter().map(found).collect();
                 reading.beyond_split |= own.iter().any(|edges| !edges.is_empty());
@@ -430,7 +430,7 @@ impl Wander<'_, '_> {
                 continue;
             }
             if self.to.contains(&next) && self.via.iter().all(|via| used.contains(via)) {
-                self.paths.push(self.cut([path.as_slice(), &[next]].concat()));
+                self.paths.push(self.cut(&[path.as_slice(), &[next]].concat()));
                 continue;
             }
             let again = used.last() == Some(&way) && way == resolver.way(last);
@@ -449,7 +449,7 @@ impl Wander<'_, '_> {
     }
 
     /// The path from the last edge before the `via` ways to the first edge after them.
-    fn cut(&self, path: Vec<u32>) -> Vec<u32> {
+    fn cut(&self, path: &[u32]) -> Vec<u32> {
         let on = |edge: &u32| self.via.contains(&self.resolver.way(*edge));
         let first = path.iter().position(on).unwrap_or(1).saturating_sub(1);
         let last = path.iter().rposition(on).map_or(path.len(), |last| last + 2).min(path.len());

@@ -84,5 +84,4 @@ pub use stored::NoDriver;
 pub use survey::{
     Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
 };
-pub use through::{DESTINATION_VALUES, destination_tag, through};
 pub use turning::MadeTurns;

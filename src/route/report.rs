@@ -8,9 +8,8 @@ use super::assemble::{PartKind, passes_over};
 use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::{Answer, Route};
-use super::through::destination_tag;
 use crate::corridor::FrameError;
-use crate::network::{Network, PassageKind};
+use crate::network::{Network, PassageKind, destination_tag};
 use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
@@ -92,7 +91,7 @@ impl Route {
             let title = network.title(edge);
             match stretches.last_mut() {
                 Some(last) if last.title == title && last.tag == tag && from_m - last.to_m <= spacing_m => {
-                    last.to_m = to_m
+                    last.to_m = to_m;
                 }
                 _ => stretches.push(DestinationOnly { title, tag, from_m, to_m }),
             }

@@ -2,30 +2,8 @@
 //!
 //! A route may begin and end on them, and drive within connected ones there. It may not pass through them from open road to open road.
 
-use crate::network::{Edge, Network};
-use crate::osm::facts::Permission;
+use crate::network::{Network, through};
 use crate::vehicle::Vehicle;
-
-/// Whether a vehicle may pass through an edge on its way to another road. This is the one place that decides it.
-#[must_use]
-pub fn through(network: &Network, edge: &Edge, vehicle: &Vehicle) -> bool {
-    destination_tag(network, edge, vehicle).is_none()
-}
-
-/// The tags that open an edge at the ends of a route only. `None` if it is open to through traffic or closed.
-#[must_use]
-pub fn destination_tag(network: &Network, edge: &Edge, _vehicle: &Vehicle) -> Option<&'static str> {
-    let legal = network.legal(edge);
-    match (legal.motor_vehicle, legal.hgv) {
-        (Permission::No, _) | (_, Permission::No) => None,
-        (_, Permission::Restricted) => Some("hgv"),
-        (Permission::Restricted, _) => Some("access, vehicle or motor_vehicle"),
-        (Permission::Yes, Permission::Yes) => None,
-    }
-}
-
-/// The values that these tags have, for messages.
-pub const DESTINATION_VALUES: &str = "destination, delivery, customers or permit";
 
 /// The edges that a vehicle may use at the ends of a route only. Empty if there are none.
 #[derive(Debug, Clone, Default)]

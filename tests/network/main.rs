@@ -11,6 +11,7 @@ mod corners;
 mod corridor_extracts;
 mod demo_region;
 mod drawn_widths;
+mod destination_only;
 mod graph_properties;
 mod islands;
 mod junction_areas;

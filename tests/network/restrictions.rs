@@ -216,6 +216,226 @@ fn two_nodes_at_one_place_are_one_to_a_restriction() {
     assert_eq!(movements(&network), "ABC- ABE! CBA- CBE EBA EBC");
 }
 
+/// A crossing where way 2 runs on from A over B to C. Way 1 comes from E in the south, way 3 from D.
+fn runs_on() -> AsciiMap {
+    AsciiMap::drawn(
+        20.0,
+        "
+            D
+            |
+        A---B---C
+            |
+            E
+        ",
+    )
+    .way("EB", ROAD)
+    .way("ABC", ROAD)
+    .way("DB", ROAD)
+}
+
+/// The forbidden movements over nodes, sorted.
+fn forbidden(network: &Network) -> String {
+    let barred = |m: &&netcert::network::Movement| m.forbidden.is_some();
+    let mut all: Vec<String> =
+        network.movements().all().iter().filter(barred).map(|m| nodes(network, &[m.from, m.to])).collect();
+    all.sort();
+    all.join(" ")
+}
+
+#[test]
+fn where_a_way_runs_on_the_side_decides() {
+    let all = "EBA EBC EBD EBE";
+    let table: [(&[i64], &[i64], &str, &str); 33] = [
+        (&[1], &[2], "only_left_turn", "EBC EBD EBE"),
+        (&[1], &[2], "only_right_turn", "EBA EBD EBE"),
+        (&[1], &[2], "Only_Left_Turn", "EBC EBD EBE"),
+        (&[1], &[2], "only_straight_on", all),
+        (&[1], &[2], "only_u_turn", all),
+        (&[1], &[2], "only_turn", all),
+        (&[1], &[2], "only_entry", all),
+        (&[1], &[2], "no_left_turn", "EBA"),
+        (&[1], &[2], "no_right_turn", "EBC"),
+        (&[1], &[2], "NO_LEFT_TURN", "EBA"),
+        (&[1], &[2], "no_left_turn;no_right_turn", "EBA EBC"),
+        (&[1], &[2], "no_straight_on", "EBA EBC"),
+        (&[1], &[2], "no_u_turn", "EBA EBC"),
+        (&[1], &[2], "no_turn", "EBA EBC"),
+        (&[1], &[2], "no_entry", "EBA EBC"),
+        (&[1], &[2], "no_exit", "EBA EBC"),
+        (&[1], &[2], "no_something", "EBA EBC"),
+        (&[2], &[1], "no_left_turn", "CBE"),
+        (&[2], &[1], "no_right_turn", "ABE"),
+        (&[2], &[1], "no_turn", "ABE CBE"),
+        (&[2], &[1], "no_entry", "ABE CBE"),
+        (&[2], &[1], "no_straight_on", "ABE CBE"),
+        (&[2], &[1], "only_right_turn", "ABA ABC ABD"),
+        (&[2], &[1], "only_left_turn", "CBA CBC CBD"),
+        (&[2], &[1], "only_straight_on", "ABA ABC ABD CBA CBC CBD"),
+        (&[2], &[2], "no_u_turn", "ABA CBC"),
+        (&[2], &[2], "only_u_turn", "ABC ABD ABE CBA CBD CBE"),
+        (&[2], &[2], "only_straight_on", "ABA ABD ABE CBC CBD CBE"),
+        (&[2], &[2], "no_straight_on", "ABC CBA"),
+        (&[1], &[2, 3], "no_left_turn", "EBA EBD"),
+        (&[1, 3], &[2], "no_left_turn", "DBC EBA"),
+        (&[1, 3], &[2], "only_right_turn", "DBC DBD DBE EBA EBD EBE"),
+        (&[1], &[2, 3], "only_right_turn", "EBA EBE"),
+    ];
+    for (from, to, value, expected) in table {
+        let (network, account) = built(&runs_on().restriction(from, at('B'), to, &format!("restriction={value}")));
+        assert_eq!(forbidden(&network), expected, "{value} from {from:?} to {to:?}");
+        assert_eq!((account.restrictions_kept, account.restrictions_read), (1, 1));
+    }
+}
+
+#[test]
+fn how_a_restriction_was_read_is_counted() {
+    let reading = |value: &str| {
+        let (_, account) = built(&runs_on().restriction(&[1], at('B'), &[2], &format!("restriction={value}")));
+        (account.restrictions_by_side, account.restrictions_any_side)
+    };
+    assert_eq!(reading("no_left_turn"), (1, 0));
+    assert_eq!(reading("only_right_turn"), (1, 0));
+    assert_eq!(reading("no_turn"), (0, 1));
+    assert_eq!(reading("only_straight_on"), (0, 1));
+    let (_, plain) = built(&runs_on().restriction(&[1], at('B'), &[3], "restriction=no_left_turn"));
+    assert_eq!((plain.restrictions_by_side, plain.restrictions_any_side), (0, 0));
+}
+
+/// Angles of 60° and 120° to the left, so that the side decides nothing.
+#[test]
+fn two_ways_on_one_side_are_both_meant() {
+    let map = || {
+        AsciiMap::placed(&[
+            ('E', [0.0, -50.0]),
+            ('B', [0.0, 0.0]),
+            ('A', [-43.0, 25.0]),
+            ('C', [-43.0, -25.0]),
+            ('D', [0.0, 50.0]),
+        ])
+        .way("EB", ROAD)
+        .way("ABC", ROAD)
+        .way("DB", ROAD)
+    };
+    for (value, expected) in
+        [("no_left_turn", "EBA EBC"), ("no_right_turn", "EBA EBC"), ("only_left_turn", "EBA EBC EBD EBE")]
+    {
+        let (network, _) = built(&map().restriction(&[1], at('B'), &[2], &format!("restriction={value}")));
+        assert_eq!(forbidden(&network), expected, "{value}");
+    }
+}
+
+/// The road from A to F was split at B: ways 1 and 2. Way 3 comes from D, way 4 leads to E.
+fn split_road(tags: &str) -> AsciiMap {
+    AsciiMap::drawn(
+        20.0,
+        "
+        S       D
+        |       |
+    A---B---G---C---F
+                |
+                E
+        ",
+    )
+    .way("AB", &format!("{ROAD} {tags}"))
+    .way("BGC", &format!("{ROAD} {tags}"))
+    .way("DC", ROAD)
+    .way("CE", ROAD)
+    .way("CF", &format!("{ROAD} {tags}"))
+    .way("SB", ROAD)
+}
+
+#[test]
+fn a_member_beyond_a_split_stands_for_the_rest_of_its_road() {
+    let named = "name=Long_Road";
+    let table: [(&[i64], &[i64], &str, &str, &str); 6] = [
+        (&[1], &[3], "no_left_turn", named, "BCD"),
+        (&[1], &[3], "only_left_turn", named, "BCB BCE BCF"),
+        (&[3], &[1], "no_right_turn", named, "DCB"),
+        (&[3], &[1], "only_right_turn", named, "DCD DCE DCF"),
+        (&[1], &[5], "no_straight_on", "ref=7", "BCF"),
+        // Another road leaves the split, so nobody knows which one is meant.
+        (&[1], &[3], "no_left_turn", "", ""),
+    ];
+    for (from, to, value, tags, expected) in table {
+        let (network, account) =
+            built(&split_road(tags).restriction(from, at('C'), to, &format!("restriction={value}")));
+        assert_eq!(forbidden(&network), expected, "{value} from {from:?} to {to:?}");
+        let found = u64::from(!expected.is_empty());
+        assert_eq!((account.restrictions_beyond_split, account.restrictions_off_network), (found, 1 - found));
+    }
+    // Without a side road, the unnamed road goes on as well.
+    let alone = split_road("").without_way(6).restriction(&[1], at('C'), &[3], "restriction=no_left_turn");
+    assert_eq!(forbidden(&built(&alone).0), "BCD");
+}
+
+#[test]
+fn an_only_that_has_no_place_is_counted() {
+    let (network, account) = built(&split_road("").restriction(&[1], at('C'), &[3], "restriction=only_left_turn"));
+    assert_eq!(forbidden(&network), "");
+    assert_eq!((account.restrictions_off_network, account.only_not_placed), (1, 1));
+    let (network, account) = built(&crossing().restriction(&[1], at('B'), &[99], "restriction=only_left_turn"));
+    assert_eq!(forbidden(&network), "ABA ABC ABD ABE");
+    assert_eq!((account.restrictions_no_destination, account.only_not_placed), (1, 0));
+}
+
+#[test]
+fn missing_members_are_found_or_all_meant() {
+    let nowhere = || Via::Nodes(Vec::new());
+    let table: [(&[i64], Via, &[i64], &str, &str); 8] = [
+        (&[1], nowhere(), &[3], "no_left_turn", "ABD"),
+        (&[1], nowhere(), &[3], "only_left_turn", "ABA ABC ABE"),
+        (&[1], at('B'), &[], "no_left_turn", "ABD"),
+        (&[1], at('B'), &[], "no_u_turn", "ABA"),
+        (&[1], at('B'), &[], "only_straight_on", "ABA ABD ABE"),
+        (&[1], at('B'), &[], "only_turn", "ABA ABC ABD ABE"),
+        (&[], at('B'), &[3], "no_left_turn", "ABD"),
+        (&[], at('B'), &[3], "no_entry", "ABD CBD EBD"),
+    ];
+    for (from, via, to, value, expected) in table {
+        let (network, account) = built(&crossing().restriction(from, via, to, &format!("restriction={value}")));
+        assert_eq!(forbidden(&network), expected, "{value} from {from:?} to {to:?}");
+        assert_eq!(account.restrictions_kept, 1);
+    }
+}
+
+/// Two carriageways, joined by ways 3 and 4 from C over G to D.
+fn joined_by_two() -> AsciiMap {
+    AsciiMap::drawn(
+        20.0,
+        "
+        F---D---E
+            |
+            G
+            |
+        A---C---B
+        ",
+    )
+    .way("ACB", ONE_WAY)
+    .way("EDF", ONE_WAY)
+    .way("CG", ROAD)
+    .way("GD", ROAD)
+}
+
+#[test]
+fn via_ways_are_found_in_another_order_and_beyond_a_split() {
+    let table: [(&[i64], &str, (u64, u64)); 4] =
+        [(&[3, 4], "ACGDF", (0, 0)), (&[4, 3], "ACGDF", (1, 0)), (&[3], "ACGDF", (0, 1)), (&[4], "CGDF", (0, 1))];
+    for (via, expected, found) in table {
+        let (network, account) =
+            built(&joined_by_two().restriction(&[1], Via::Ways(via.to_vec()), &[2], "restriction=no_u_turn"));
+        assert_eq!(long_sequences(&network), expected, "{via:?}");
+        assert_eq!((account.restrictions_via_found, account.restrictions_beyond_split), found, "{via:?}");
+    }
+}
+
+#[test]
+fn an_only_over_ways_whose_destination_is_elsewhere_forbids_every_way_on() {
+    let (network, account) =
+        built(&carriageways().restriction(&[1], Via::Ways(vec![3]), &[99], "restriction=only_straight_on"));
+    assert_eq!((forbidden(&network).as_str(), long_sequences(&network).as_str()), ("ACB", "ACDF ACDC"));
+    assert_eq!(account.restrictions_no_destination, 1);
+}
+
 #[test]
 fn real_restrictions_are_all_accounted_for() {
     let Some(path) = extract("heidelberg_de.osm.pbf") else { return };

@@ -68,6 +68,13 @@ pub(super) struct Strings<'a> {
     texts: Vec<Option<&'a str>>,
 }
 
+#[cfg(test)]
+impl<'a> Strings<'a> {
+    pub(super) fn of(texts: &[&'a str]) -> Self {
+        Self { texts: texts.iter().copied().map(Some).collect() }
+    }
+}
+
 impl<'a> Strings<'a> {
     fn extend(&mut self, table: &'a [u8]) -> Result<(), Problem> {
         let mut cursor = Cursor::new(table);

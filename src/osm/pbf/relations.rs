@@ -223,3 +223,95 @@ impl Members {
         Restriction { id, rules, from: self.from, via, to: self.to }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use MemberType::{NODE, WAY};
+
+    /// Reads one relation with these tags and members.
+    fn reading(tags: &[(&str, &str)], members: &[(MemberType, i64, &str)]) -> RelationBatch {
+        let mut relation = Relation::new();
+        relation.set_id(7);
+        let mut texts = Vec::new();
+        for (key, value) in tags {
+            relation.keys.push(texts.len() as u32);
+            relation.vals.push(texts.len() as u32 + 1);
+            texts.extend([*key, *value]);
+        }
+        let mut last = 0;
+        for &(kind, id, role) in members {
+            relation.types.push(kind.into());
+            relation.memids.push(id - last);
+            relation.roles_sid.push(texts.len() as i32);
+            texts.push(role);
+            last = id;
+        }
+        let mut batch = RelationBatch::default();
+        let message = relation.write_to_bytes().unwrap();
+        read(&message, &Strings::of(&texts), &Changes::default(), &mut batch).unwrap();
+        let tally = batch.tally;
+        assert_eq!(tally.read, 1);
+        assert_eq!(tally.kept(), batch.restrictions.len() as u64);
+        batch
+    }
+
+    /// `from > via > to`, with nodes of a `via` after `@`, or `None` if the relation is not kept.
+    fn read_as(value: &str, members: &[(MemberType, i64, &str)]) -> Option<String> {
+        let mut batch = reading(&[("type", "restriction"), ("restriction", value)], members);
+        let restriction = batch.restrictions.pop()?;
+        let list = |ids: &[i64]| ids.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
+        let via = match &restriction.via {
+            Via::Nodes(nodes) => format!("@{}", list(nodes)),
+            Via::Ways(ways) => list(ways),
+        };
+        Some(format!("{} > {via} > {}", list(&restriction.from), list(&restriction.to)))
+    }
+
+    #[test]
+    fn members_are_understood_in_other_spellings_and_places() {
+        let table: [(&str, &[(MemberType, i64, &str)], Option<&str>); 15] = [
+            ("no_left_turn", &[(WAY, 1, "from"), (NODE, 5, "via"), (WAY, 2, "to")], Some("1 > @5 > 2")),
+            ("no_left_turn", &[(WAY, 2, "To"), (NODE, 5, "VIA"), (WAY, 1, " From ")], Some("1 > @5 > 2")),
+            ("no_entry", &[(WAY, 1, "from"), (WAY, 3, "from"), (NODE, 5, "via"), (WAY, 2, "to")], Some("1,3 > @5 > 2")),
+            ("no_exit", &[(WAY, 1, "from"), (NODE, 5, "via"), (WAY, 2, "to"), (WAY, 3, "to")], Some("1 > @5 > 2,3")),
+            ("no_u_turn", &[(WAY, 1, "from"), (WAY, 3, "via"), (WAY, 4, "via"), (WAY, 2, "to")], Some("1 > 3,4 > 2")),
+            ("no_u_turn", &[(WAY, 1, "from"), (NODE, 5, "via"), (WAY, 3, "via"), (WAY, 2, "to")], Some("1 > 3 > 2")),
+            ("no_left_turn", &[(WAY, 1, "from"), (NODE, 5, "intersection"), (WAY, 2, "to")], Some("1 > @5 > 2")),
+            ("no_left_turn", &[(WAY, 1, "from"), (NODE, 5, "location_hint"), (WAY, 2, "to")], Some("1 > @5 > 2")),
+            (
+                "no_left_turn",
+                &[(WAY, 1, "from"), (NODE, 6, "location_hint"), (NODE, 5, "via"), (WAY, 2, "to")],
+                Some("1 > @5 > 2"),
+            ),
+            ("no_left_turn", &[(WAY, 1, "from"), (WAY, 2, "to")], Some("1 > @ > 2")),
+            ("only_left_turn", &[(WAY, 1, "from"), (NODE, 5, "via")], Some("1 > @5 > ")),
+            ("no_left_turn", &[(NODE, 5, "via"), (WAY, 2, "to")], Some(" > @5 > 2")),
+            ("only_left_turn", &[(NODE, 5, "via"), (WAY, 2, "to")], None),
+            ("no_left_turn", &[(WAY, 3, "via"), (WAY, 2, "to")], None),
+            ("no_left_turn", &[(NODE, 5, "via"), (NODE, 1, "from"), (NODE, 2, "to")], None),
+        ];
+        for (value, members, expected) in table {
+            assert_eq!(read_as(value, members).as_deref(), expected, "{value} {members:?}");
+        }
+    }
+
+    #[test]
+    fn every_restriction_has_one_counted_outcome() {
+        const MEMBERS: &[(MemberType, i64, &str)] = &[(WAY, 1, "from"), (NODE, 5, "via"), (WAY, 2, "to")];
+        let tally =
+            |tags: &[(&str, &str)], members| reading(&[&[("type", "restriction")], tags].concat(), members).tally;
+        let plain = ("restriction", "no_left_turn");
+        assert_eq!(tally(&[plain], MEMBERS).kept(), 1);
+        assert_eq!(tally(&[("restriction", "none")], MEMBERS).unknown_restrictions, 1);
+        assert_eq!(tally(&[], MEMBERS).unknown_restrictions, 1);
+        assert_eq!(tally(&[("restriction", "no_right_turn_on_red")], MEMBERS).on_red, 1);
+        assert_eq!(tally(&[plain, ("except", "hgv")], MEMBERS).exempt, 1);
+        assert_eq!(tally(&[("restriction:bus", "no_left_turn")], MEMBERS).other_vehicles, 1);
+        assert_eq!(tally(&[plain], &MEMBERS[..1]).broken_restrictions, 1);
+        let incomplete = tally(&[plain], &MEMBERS[..2]);
+        assert_eq!((incomplete.kept(), incomplete.incomplete_restrictions), (1, 1));
+        assert_eq!(reading(&[("type", "route")], MEMBERS).tally.restrictions, 0);
+    }
+}

@@ -18,7 +18,8 @@ pub(super) struct PartEnds {
 /// The parts of each split way, in way order.
 pub(super) type Splits = FxHashMap<i64, Vec<PartEnds>>;
 
-/// Replaces split ways by their parts. Returns whether there were any.
+/// Replaces split ways by their parts. Returns whether there were any. A restriction of which two parts of one way meet the `via` says
+/// no longer which one it means. Its refusals are written anew, so it is no restriction any more.
 pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut Texts) -> bool {
     let ids = ids(&relation.memids);
     let kinds: Vec<Kind> = relation.types.iter().map(EnumOrUnknown::enum_value_or_default).collect();
@@ -31,6 +32,19 @@ pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut T
         .filter(|&i| restriction && roles.get(i).is_some_and(|role| role == "via"))
         .flat_map(|i| via_nodes(ids[i], kinds.get(i).copied(), splits))
         .collect();
+    let loose = |i: usize| {
+        let parts = splits.get(&ids[i]).filter(|_| kinds.get(i) == Some(&Kind::WAY));
+        let side = roles.get(i).is_some_and(|role| matches!(role.trim().to_ascii_lowercase().as_str(), "from" | "to"));
+        side && parts.is_some_and(|parts| parts.iter().filter(|part| meets(part, &via)).count() > 1)
+    };
+    if restriction && (0..ids.len()).any(loose) {
+        let was = texts.number(b"netcert:was:type");
+        for key in &mut relation.keys {
+            if texts.text(*key) == b"type" {
+                *key = was;
+            }
+        }
+    }
     let (mut types, mut memids, mut roles_sid, mut last) = (Vec::new(), Vec::new(), Vec::new(), 0_i64);
     for (i, &id) in ids.iter().enumerate() {
         let (kind, role) = (kinds.get(i).copied().unwrap_or_default(), roles.get(i).map_or("", String::as_str));
@@ -118,8 +132,11 @@ fn via_nodes(id: i64, kind: Option<Kind>, splits: &Splits) -> Vec<i64> {
 /// The part of a way at the `via`. If the nodes of the `via` are not known, the first part; a restriction over ways is written
 /// again with the right parts.
 fn touching(parts: &[PartEnds], via: &[i64]) -> i64 {
-    let touches = |part: &&PartEnds| part.ends.iter().any(|end| via.contains(end));
-    parts.iter().find(touches).or(parts.first()).map_or(0, |part| part.id)
+    parts.iter().find(|part| meets(part, via)).or(parts.first()).map_or(0, |part| part.id)
+}
+
+fn meets(part: &PartEnds, via: &[i64]) -> bool {
+    part.ends.iter().any(|end| via.contains(end))
 }
 
 /// The word that refuses a turn by this angle, degrees, positive to the left.
@@ -157,6 +174,13 @@ mod tests {
         ban.vals.push(texts.number(b"restriction"));
         assert!(name_parts(&mut ban, &splits, &mut texts));
         assert_eq!(ids(&ban.memids), [106, 4, 9]);
+        // Two parts meet the node, so the relation means neither.
+        let mut loose = relation(&[(Kind::WAY, 9, "from"), (Kind::NODE, 2, "via"), (Kind::WAY, 5, "To")], &mut texts);
+        loose.keys.push(texts.number(b"type"));
+        loose.vals.push(texts.number(b"restriction"));
+        assert!(name_parts(&mut loose, &splits, &mut texts));
+        assert_eq!(value(&loose, &texts, "type"), None);
+        assert_eq!(value(&loose, &texts, "netcert:was:type"), Some(&b"restriction"[..]));
         let mut route = relation(&[(Kind::WAY, 7, ""), (Kind::WAY, 5, ""), (Kind::WAY, 5, "backward")], &mut texts);
         assert!(name_parts(&mut route, &splits, &mut texts));
         assert_eq!(ids(&route.memids), [7, 5, 105, 106, 106, 105, 5]);
