@@ -1,10 +1,9 @@
 //! A cross section laid out from the left of the way's node order to its right, and the strips that follow from it.
 //!
-//! Everything about sides is in this file: positions, `placement`, and the kerb by driving side and direction. A strip
-//! is at least as wide as the narrowest lane and its edges are finite; otherwise there is no strip.
+//! Everything about sides is in this file: positions, `placement`, and the kerb by driving side and direction. A strip has
+//! a width, however small, and its edges are finite; otherwise there is no strip.
 
 use crate::osm::facts::section::{LaneLine, Placement};
-use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{CrossSection, Direction, Strip, WidthSource};
 
 /// Use of a part of the cross section.
@@ -24,19 +23,34 @@ pub(super) enum Use {
 pub(super) struct Segment {
     /// Width, metres. `None` until the carriageway has been shared out.
     pub(super) width_m: Option<f32>,
+    /// What the width does not exceed, metres: a list's width that may be this lane's.
+    pub(super) most_m: Option<f32>,
+    /// Whether a list gives the width of this very lane.
+    pub(super) listed: bool,
     /// Direction of the lane, whether or not it is open. Placements count these lanes.
     pub(super) of: Option<Direction>,
     pub(super) used: Use,
 }
 
 impl Segment {
+    /// A part of unknown width.
+    pub(super) const fn new(of: Option<Direction>, used: Use) -> Segment {
+        Segment { width_m: None, most_m: None, listed: false, of, used }
+    }
+
+    /// The part with its share of a carriageway, unless its width is known.
+    pub(super) fn with_share(self, share_m: f32) -> Segment {
+        let share_m = self.most_m.map_or(share_m, |most_m| most_m.min(share_m));
+        Segment { width_m: self.width_m.or(Some(share_m)), ..self }
+    }
+
     pub(super) fn is_open_to(&self, direction: Direction) -> bool {
         self.used == Use::Shared || self.used == Use::Lane(direction)
     }
 }
 
 /// One lane for both directions by turns.
-pub(super) const SHARED: Segment = Segment { width_m: None, of: None, used: Use::Shared };
+pub(super) const SHARED: Segment = Segment::new(None, Use::Shared);
 
 pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction: None, carriageway: None };
 
@@ -47,6 +61,8 @@ pub(super) struct Layout {
     /// Evidence of the whole carriageway, and of its division into lanes.
     pub(super) whole: Option<WidthSource>,
     pub(super) divided: Option<WidthSource>,
+    /// Evidence of lanes whose width a list gives.
+    pub(super) listed: Option<WidthSource>,
     pub(super) placement: Placement,
 }
 
@@ -105,7 +121,12 @@ impl Layout {
                 Direction::Forward => (left, right),
                 Direction::Backward => (-right, -left),
             };
-            (left_m - right_m >= *LANE_M.start() - 1e-3).then_some(Strip { left_m, right_m, source })
+            (left_m > right_m).then_some(Strip { left_m, right_m, source })
+        };
+        // A list's lanes need no other evidence.
+        let lanes = |first: usize, last: usize| {
+            let listed = inwards[first..=last].iter().all(|&at| self.segments[at].listed);
+            strip(first, last, self.listed.filter(|_| listed).unwrap_or(divided))
         };
         let run = |from: usize, fits: &dyn Fn(&Segment) -> bool| {
             let after = inwards[from..].iter().take_while(|&&at| fits(&self.segments[at])).count();
@@ -115,8 +136,8 @@ impl Layout {
         let (_, last_open) = run(kerb_side, &|s| s.is_open_to(direction));
         let (first_paved, last_paved) = run(kerb_side, &|s| s.used != Use::Aside);
         CrossSection {
-            lane: strip(kerb_side, kerb_side, divided),
-            direction: strip(kerb_side, last_open, divided),
+            lane: lanes(kerb_side, kerb_side),
+            direction: lanes(kerb_side, last_open),
             carriageway: strip(first_paved, last_paved, whole),
         }
     }

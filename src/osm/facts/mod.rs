@@ -10,6 +10,7 @@ mod class;
 mod country;
 mod given;
 mod kerb_reader;
+mod lane_lists;
 mod lanes;
 mod layout;
 mod legal;

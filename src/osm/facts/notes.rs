@@ -5,11 +5,13 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Note {
-    /// `width` and similar keys: not a positive length in a known unit, or outside 1.8 m to 40 m. The tag is ignored.
+    /// `width` and similar keys: not a positive length in a known unit, or over 40 m. If no other width can be read, the
+    /// width is unknown.
     BadWidth,
     /// `lanes` and similar keys: not a whole number from 1 to 16. The tag is ignored, but 1.5 counts as 1.
     BadLanes,
-    /// `width:lanes` unreadable, or with more than eight lanes. Ignored.
+    /// Lists of lanes with more than eight lanes or of different lengths, or an entry of `width:lanes` that is no width of a
+    /// lane. What can be read counts: a width without its lane bounds all lanes.
     BadLaneWidths,
     /// `placement` outside the documented values. Ignored.
     BadPlacement,

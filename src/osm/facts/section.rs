@@ -14,7 +14,7 @@ pub(super) const LISTED: usize = 8;
 /// Resolution of `width:lanes`, metres; values are rounded down.
 pub(super) const LANE_STEP_M: f32 = 0.05;
 
-/// A length up to 65 m, rounded down. It is exact for lengths in tags.
+/// A length up to 65 m, rounded down, but at least 1 mm. It is exact for lengths in tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub(super) struct Millimetres(NonZeroU16);
 
@@ -22,7 +22,7 @@ impl Millimetres {
     pub(super) fn from_metres(metres: f32) -> Option<Millimetres> {
         // The addition covers rounding: 3.3 m is 3299.9999 mm in f32.
         let whole = (f64::from(metres) * 1000.0 + 0.01).floor();
-        if (1.0..=65535.0).contains(&whole) { NonZeroU16::new(whole as u16).map(Millimetres) } else { None }
+        if metres > 0.0 && whole <= 65535.0 { NonZeroU16::new((whole as u16).max(1)).map(Millimetres) } else { None }
     }
 
     pub(super) fn metres(self) -> f32 {
@@ -62,10 +62,16 @@ pub(super) struct LaneTags {
     pub(super) listed: u8,
     /// Bit i is set if listed lane i (from the left in direction of travel) is closed to heavy vehicles.
     pub(super) closed: u8,
-    /// Widths of the listed lanes in steps of 5 cm. The first is 0 if they are unknown.
+    /// Widths of the listed lanes in steps of 5 cm; 0 where the list gives none.
     pub(super) width_steps: [u8; LISTED],
+    /// Narrowest width of a list that does not tell which lane it means, in steps of 5 cm; 0 without one. No lane of
+    /// unknown width is wider.
+    pub(super) most_steps: u8,
     /// Bus lanes without a position (`lanes:psv=1`, `busway=lane`). They are taken to be at the kerb.
     pub(super) bus: u8,
+    /// Lanes for cars with several people, without a position (`lanes:hov=1`, `hov=lane`). They are taken to be at the
+    /// middle of the road.
+    pub(super) hov: u8,
 }
 
 impl LaneTags {
@@ -73,11 +79,26 @@ impl LaneTags {
         lane < LISTED && self.closed & (1 << lane) != 0
     }
 
-    /// Widths of the listed lanes in metres, if all are known.
-    pub(super) fn widths_m(&self) -> Option<impl ExactSizeIterator<Item = f32> + '_> {
-        let steps = self.width_steps.get(..usize::from(self.listed))?;
-        (!steps.is_empty() && steps[0] > 0).then(|| steps.iter().map(|step| f32::from(*step) * LANE_STEP_M))
+    /// Width of a listed lane, metres.
+    pub(super) fn width_m(&self, lane: usize) -> Option<f32> {
+        self.width_steps[..usize::from(self.listed).min(LISTED)].get(lane).copied().and_then(in_metres)
     }
+
+    /// The narrowest listed width, metres.
+    pub(super) fn narrowest_m(&self) -> Option<f32> {
+        (0..LISTED).filter_map(|lane| self.width_m(lane)).reduce(f32::min)
+    }
+
+    /// What no lane of unknown width exceeds, metres. A list that is shorter than the road has lanes bounds the others.
+    pub(super) fn most_m(&self, lanes: u8) -> Option<f32> {
+        let of_list = if self.listed < lanes { self.narrowest_m() } else { None };
+        of_list.into_iter().chain(in_metres(self.most_steps)).reduce(f32::min)
+    }
+}
+
+/// A number of steps as metres. 0 means no width.
+pub(super) fn in_metres(steps: u8) -> Option<f32> {
+    (steps > 0).then(|| f32::from(steps) * LANE_STEP_M)
 }
 
 /// The line of a lane that the way's line follows.
@@ -100,6 +121,33 @@ pub(super) enum LaneLine {
     Right,
 }
 
+/// What a tag says of the whole cross section, one bit each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Mark {
+    /// A width is tagged that cannot be read, and no other one can.
+    Unreadable = 1,
+    /// `narrow=yes`
+    Narrow = 2,
+    /// All lanes go one way at a time.
+    Reversible = 4,
+    /// Both directions share one lane by turns.
+    Alternating = 8,
+    /// The lists of one direction cover the whole road, from left to right in that direction. It is forward on a two-way
+    /// road.
+    WholeRoad = 16,
+}
+
+/// A set of [`Mark`]s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub(super) struct Marks(u8);
+
+impl Marks {
+    pub(super) fn of(marks: &[(Mark, bool)]) -> Marks {
+        Marks(marks.iter().filter(|(_, set)| *set).map(|(mark, _)| *mark as u8).sum())
+    }
+}
+
 /// All tags of the cross section.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct SectionTags {
@@ -108,17 +156,14 @@ pub(super) struct SectionTags {
     pub(super) source: WidthSource,
     /// `maxwidth:physical`
     pub(super) physical: Option<Millimetres>,
-    /// `narrow=yes`
-    pub(super) narrow: bool,
-    /// Whether all lanes go one way at a time.
-    pub(super) reversible: bool,
-    /// Whether both directions share one lane by turns.
-    pub(super) alternating: bool,
+    pub(super) marks: Marks,
     /// `lanes`; 0 if untagged.
     pub(super) lanes: u8,
     /// `lanes:both_ways`
     pub(super) both_ways: u8,
-    /// Forward, backward.
+    /// Width of the lane for both directions, in steps of 5 cm; 0 if untagged.
+    pub(super) both_ways_steps: u8,
+    /// Forward, backward. On a one-way road the lanes of the other direction are for oncoming buses.
     pub(super) directions: [LaneTags; 2],
     /// On the left and on the right of the way's node order.
     pub(super) kerbs: [Kerb; 2],
@@ -126,6 +171,10 @@ pub(super) struct SectionTags {
 }
 
 impl SectionTags {
+    pub(super) fn is(&self, mark: Mark) -> bool {
+        self.marks.0 & mark as u8 != 0
+    }
+
     pub(super) fn tagged_lanes(&self) -> Option<u8> {
         let by_direction = self.directions[0].count.saturating_add(self.directions[1].count);
         let lanes = if self.lanes > 0 { self.lanes } else { by_direction.saturating_add(self.both_ways) };

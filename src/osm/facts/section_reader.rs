@@ -1,41 +1,37 @@
 //! Reads the tags of a cross section into [`SectionTags`], in any order.
 //!
-//! An unusable tag is noted and ignored. If two tags contradict each other, the narrower reading counts.
+//! An unusable tag is noted. A width that cannot be read leaves the cross section unknown if no other width can be read:
+//! it may say less than an assumed one. If two tags contradict each other, the narrower reading counts.
 
 use crate::osm::facts::kerb_reader::KerbReader;
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::section::{LANE_STEP_M, LISTED, LaneLine, LaneTags, Millimetres, Placement, SectionTags};
+use crate::osm::facts::lane_lists::{Lists, list_index};
+use crate::osm::facts::section::{LaneLine, LaneTags, Mark, Marks, Millimetres, Placement, SectionTags};
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{Direction, Oneway, WidthSource, value};
 
-/// Bounds of a carriageway, metres. Values outside are typing errors, or the way is not for lorries.
-const CARRIAGEWAY_M: std::ops::RangeInclusive<f32> = 1.8..=40.0;
-
-/// Lane lists of one direction (index 0: without a suffix), before their direction is known.
-#[derive(Debug, Clone, Copy, Default)]
-struct Lists {
-    listed: u8,
-    closed: u8,
-    width_steps: [u8; LISTED],
-    count: u8,
-    bus: u8,
-    /// Lanes with turns (`turn:lanes`); 0 if untagged.
-    turns: u8,
-    unusable: bool,
-}
+/// Greatest width of a carriageway, metres. A greater value is a typing error.
+const WIDEST_M: f32 = 40.0;
 
 /// Collects the tags of the cross section, in any order.
 #[derive(Debug, Default)]
 pub(super) struct SectionReader {
     /// In order of precedence: `width:carriageway`, `width`, `est_width`.
     widths: [Option<Millimetres>; 3],
+    /// Whether one of these tags cannot be read.
+    unreadable: bool,
     estimated: bool,
     surveyed: bool,
     physical: Option<Millimetres>,
     narrow: bool,
     both_ways: u8,
+    /// Lists of the lanes for both directions.
+    middle: Lists,
     /// Indices: without a suffix, forward, backward.
     lists: [Lists; 3],
+    /// Whether a one-way road has a lane for oncoming buses (`busway=opposite_lane`), and whether it is open to them.
+    oncoming_lane: bool,
+    oncoming: bool,
     kerbs: KerbReader,
     placements: [Option<Placement>; 3],
 }
@@ -45,28 +41,46 @@ impl SectionReader {
     pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         match head {
             "width" => match suffix {
-                "" => self.widths[1] = width(text, notes),
-                "carriageway" => self.widths[0] = width(text, notes),
+                "" => self.width(1, text, notes),
+                "carriageway" => self.width(0, text, notes),
                 "source" => self.origin(text),
-                _ => self.lane_widths(suffix, text, notes),
+                _ => {
+                    if let Some(lists) = self.lists_of(suffix) {
+                        lists.widths(text, notes);
+                    }
+                }
             },
-            "est_width" if suffix.is_empty() => self.widths[2] = width(text, notes),
+            "est_width" if suffix.is_empty() => self.width(2, text, notes),
             "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
             // `limits` reads the same tag as a limit, and notes it if it is unreadable.
             "maxwidth" if suffix == "physical" => {
                 self.physical = value::metres(text).and_then(Millimetres::from_metres);
             }
-            "narrow" if suffix.is_empty() => self.narrow = text == "yes",
+            "narrow" if suffix.is_empty() => self.narrow = !matches!(text, "no" | "false" | "0"),
             "lanes" => self.lanes(suffix, text, notes),
-            "turn" => self.turns(suffix, text),
+            "turn" => {
+                if let Some(lists) = self.lists_of(suffix) {
+                    lists.turns(text);
+                }
+            }
             "placement" => self.placement(suffix, text, notes),
-            "access" | "vehicle" | "motor_vehicle" | "hgv" | "bus" | "psv" | "cycleway" | "bicycle"
-                if suffix.starts_with("lanes") =>
-            {
-                self.closed_lanes(head, suffix, text, notes);
+            _ if suffix.starts_with("lanes") => {
+                if let Some(lists) = self.lists_of(suffix) {
+                    lists.closed(head, text, notes);
+                }
             }
             "cycleway" | "shoulder" | "parking" => self.kerbs.take(head, suffix, text),
             "busway" => self.busway(suffix, text),
+            "hov" => {
+                if let Some(index) = side_index(suffix).filter(|_| text == "lane") {
+                    self.lists[index].more_hov(1);
+                }
+            }
+            "oneway" => self.oncoming |= matches!(suffix, "bus" | "psv") && text == "no",
+            "bus" | "psv" => {
+                self.oncoming |= (suffix == "oneway" && text == "no")
+                    || (suffix == "backward" && matches!(text, "yes" | "designated"));
+            }
             _ => {}
         }
     }
@@ -77,7 +91,30 @@ impl SectionReader {
 
     /// Takes a width of the carriageway that is no tag, metres. The same bounds hold.
     pub(super) fn given_width(&mut self, metres: f64, notes: &mut Notes) {
-        self.widths[1] = usable_width(metres as f32, notes);
+        self.put_width(1, Some(metres as f32), notes);
+    }
+
+    /// A width as mappers write it. Lists, ranges and approximations are no more than estimates.
+    fn width(&mut self, slot: usize, text: &str, notes: &mut Notes) {
+        let exact = readable(text);
+        self.put_width(slot, exact.or_else(|| least_of(text)), notes);
+        self.estimated |= exact.is_none() && self.widths[slot].is_some();
+    }
+
+    fn put_width(&mut self, slot: usize, metres: Option<f32>, notes: &mut Notes) {
+        self.widths[slot] = metres.filter(|metres| *metres <= WIDEST_M).and_then(Millimetres::from_metres);
+        if self.widths[slot].is_none() {
+            notes.add(Note::BadWidth);
+            self.unreadable = true;
+        }
+    }
+
+    /// The lists that a suffix such as `lanes:forward` names.
+    fn lists_of(&mut self, suffix: &str) -> Option<&mut Lists> {
+        if suffix == "lanes:both_ways" {
+            return Some(&mut self.middle);
+        }
+        list_index(suffix).map(|index| &mut self.lists[index])
     }
 
     fn origin(&mut self, text: &str) {
@@ -89,111 +126,71 @@ impl SectionReader {
     }
 
     fn lanes(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
-        let (bus, side) = match suffix.strip_prefix("psv").or_else(|| suffix.strip_prefix("bus")) {
-            Some(rest) => (true, rest.trim_start_matches(':')),
-            None => (false, suffix),
-        };
+        let kind = ["psv", "bus", "hov"].into_iter().find(|kind| {
+            suffix.strip_prefix(kind).is_some_and(|rest| rest.is_empty() || rest.starts_with(':'))
+        });
+        let side = kind.map_or(suffix, |kind| suffix[kind.len()..].trim_start_matches(':'));
         let slot = match side {
-            "both_ways" if !bus => None,
+            "both_ways" if kind.is_none() => None,
             _ => match side_index(side) {
                 Some(index) => Some(index),
                 None => return,
             },
         };
         let (count, sound) = value::lane_count(text);
-        if !(sound || bus && text == "0") {
+        if !(sound || kind.is_some() && text == "0") {
             notes.add(Note::BadLanes);
         }
         let count = count.unwrap_or(0);
-        match slot {
-            None => self.both_ways = count,
-            Some(index) if bus => self.lists[index].bus = count,
-            Some(index) => self.lists[index].count = count,
+        match (slot, kind) {
+            (None, _) => self.both_ways = count,
+            (Some(index), Some("hov")) => self.lists[index].more_hov(count),
+            (Some(index), Some(_)) => self.lists[index].more_bus(count),
+            (Some(index), None) => self.lists[index].count = count,
         }
-    }
-
-    /// Counts the lanes of `turn:lanes`. More than a road can have are a typing error.
-    fn turns(&mut self, suffix: &str, text: &str) {
-        let Some(index) = list_index(suffix) else { return };
-        let lanes = u8::try_from(text.split('|').count()).unwrap_or(u8::MAX);
-        self.lists[index].turns = if lanes <= value::MOST_LANES { lanes } else { 0 };
-    }
-
-    fn lane_widths(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
-        let Some(index) = list_index(suffix) else { return };
-        let lists = &mut self.lists[index];
-        let mut steps = [0; LISTED];
-        let mut count = 0;
-        for part in text.split('|') {
-            let step = value::metres(part).map_or(0.0, |width| (width / LANE_STEP_M + 1e-3).floor());
-            // From half a metre (a cycle lane) to the widest lane.
-            match steps.get_mut(count) {
-                Some(slot) if (10.0..=*LANE_M.end() / LANE_STEP_M).contains(&step) => *slot = step as u8,
-                _ => {
-                    notes.add(Note::BadLaneWidths);
-                    return;
-                }
-            }
-            count += 1;
-        }
-        lists.agree(count, notes);
-        lists.width_steps = steps;
-    }
-
-    /// Closes lanes: those for other traffic, and those closed by access, vehicle, motor_vehicle or hgv.
-    fn closed_lanes(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
-        let Some(index) = list_index(suffix) else { return };
-        let mut count = 0;
-        let mut closed = 0_u8;
-        for part in text.split('|') {
-            let shut = match head {
-                "cycleway" => matches!(part, "lane" | "track"),
-                "bicycle" | "bus" | "psv" => part == "designated",
-                _ => !matches!(part, "" | "yes" | "designated" | "permissive" | "destination" | "delivery"),
-            };
-            if count < LISTED && shut {
-                closed |= 1 << count;
-            }
-            count += 1;
-        }
-        if count > LISTED {
-            notes.add(Note::BadLaneWidths);
-            self.lists[index].unusable = true;
-            return;
-        }
-        self.lists[index].agree(count, notes);
-        self.lists[index].closed |= closed;
     }
 
     /// The driving side determines the direction that a side serves. Both directions get a bus lane at the kerb, so the
     /// lane beside it is the kerb-side lane in either case.
     fn busway(&mut self, suffix: &str, text: &str) {
-        if text == "lane" && matches!(suffix, "" | "left" | "right" | "both") {
-            self.lists[0].bus = self.lists[0].bus.max(1);
+        let index = match suffix {
+            "" | "left" | "right" | "both" => 0,
+            "forward" => 1,
+            "backward" => 2,
+            _ => return,
+        };
+        match text {
+            "lane" => self.lists[index].more_bus(1),
+            "opposite_lane" => self.oncoming_lane = true,
+            "opposite" => self.oncoming = true,
+            _ => {}
         }
     }
 
     /// Combines the tags, once the way's directions are known.
     pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
-        let [mut plain, mut forward, mut backward] = self.lists;
+        let mut lists = self.lists;
+        let both_ways = self.both_ways.max(self.middle.lanes()).max(self.middle.turns);
         // More lanes are a typing error in one of the tags, so none is used.
-        if forward.count + backward.count + self.both_ways > value::MOST_LANES {
+        if lists[1].count + lists[2].count + both_ways > value::MOST_LANES {
             notes.add(Note::BadLanes);
-            [&mut plain, &mut forward, &mut backward].into_iter().for_each(|lists| lists.count = 0);
+            lists.iter_mut().for_each(|lists| lists.count = 0);
         }
         // With a cycle lane the lists are ambiguous, because they may include it.
         if !self.kerbs.has_cycle_lane() {
-            count_turns([&mut plain, &mut forward, &mut backward], self.both_ways, oneway);
+            count_turns(&mut lists, both_ways, oneway);
         }
-        let directions = match oneway {
-            Oneway::Forward => [plain.or(forward).tags(), LaneTags::default()],
-            Oneway::Backward => [LaneTags::default(), plain.or(backward).tags()],
-            // Lists without a suffix have no meaning on a two-way road.
-            Oneway::No => [forward, backward].map(|lists| {
-                let mut tags = lists.tags();
-                tags.bus = tags.bus.max(plain.bus.div_ceil(2));
-                tags
-            }),
+        let (directions, whole_road) = match oneway {
+            Oneway::No if reversible => (by_turns(&lists), false),
+            Oneway::No => two_way(&mut lists, both_ways),
+            Oneway::Forward => {
+                let (own, other, whole_road) = self.one_way(&lists, 1);
+                ([own, other], whole_road)
+            }
+            Oneway::Backward => {
+                let (own, other, whole_road) = self.one_way(&lists, 2);
+                ([other, own], whole_road)
+            }
         };
         let [plain_line, forward_line, backward_line] = self.placements;
         let placement = match oneway {
@@ -208,15 +205,21 @@ impl SectionReader {
             _ if self.surveyed => WidthSource::Surveyed,
             _ => WidthSource::Tagged,
         };
+        let carriageway = self.widths.into_iter().flatten().next();
         let section = SectionTags {
-            carriageway: self.widths.into_iter().flatten().next(),
+            carriageway,
             source,
             physical: self.physical,
-            narrow: self.narrow,
-            reversible,
-            alternating,
-            lanes: plain.count,
-            both_ways: self.both_ways,
+            marks: Marks::of(&[
+                (Mark::Unreadable, self.unreadable && carriageway.is_none()),
+                (Mark::Narrow, self.narrow),
+                (Mark::Reversible, reversible),
+                (Mark::Alternating, alternating),
+                (Mark::WholeRoad, whole_road),
+            ]),
+            lanes: lists[0].count,
+            both_ways,
+            both_ways_steps: self.middle.narrowest(),
             directions,
             kerbs: self.kerbs.finish(),
             placement: placement.unwrap_or_default(),
@@ -227,6 +230,30 @@ impl SectionReader {
             notes.add(Note::WidthContradictsLanes);
         }
         section
+    }
+
+    /// The lanes of a one-way road and those of oncoming buses, and whether the lists cover both. `own` is the index of
+    /// the lists of its direction.
+    fn one_way(&self, lists: &[Lists; 3], own: usize) -> (LaneTags, LaneTags, bool) {
+        let (plain, with_suffix, against) = (&lists[0], &lists[own], &lists[3 - own]);
+        let tagged = against.count.max(against.lanes()).max(against.bus).max(u8::from(self.oncoming_lane));
+        let oncoming = match (with_suffix.count, plain.count) {
+            (1.., 1..) => tagged.max(plain.count.saturating_sub(with_suffix.count)),
+            // Buses that may come need one of the lanes, unless there is only one for all.
+            (0, 2..) => tagged.max(u8::from(self.oncoming)),
+            (0, 0) if self.widths.iter().any(Option::is_some) => tagged.max(u8::from(self.oncoming)),
+            _ => tagged,
+        };
+        let mut tags = plain.or(*with_suffix).tags();
+        tags.count = match (with_suffix.count, plain.count) {
+            (0, 0) => 0,
+            (0, all) => all.saturating_sub(oncoming).max(1),
+            (own, _) => own,
+        };
+        let whole_road = oncoming > 0 && plain.lanes() > 0 && plain.lanes() != tags.count;
+        let mut other = if oncoming > 0 { against.tags() } else { LaneTags::default() };
+        other.count = oncoming;
+        (tags, other, whole_road)
     }
 
     fn placement(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
@@ -241,12 +268,13 @@ impl SectionReader {
 
 /// Takes the lanes with turns as the number of lanes where that is not tagged. On a two-way road whose lanes are counted, each
 /// direction keeps at least one.
-fn count_turns([plain, forward, backward]: [&mut Lists; 3], both_ways: u8, oneway: Oneway) {
-    let unknown = |lists: &Lists| lists.count == 0 && lists.listed == 0;
+fn count_turns(lists: &mut [Lists; 3], both_ways: u8, oneway: Oneway) {
+    let unknown = |lists: &Lists| lists.count == 0 && lists.lanes() == 0;
+    let [plain, forward, backward] = lists;
     if oneway != Oneway::No {
         let own = if oneway == Oneway::Forward { forward } else { backward };
         if unknown(plain) && unknown(own) {
-            plain.count = if plain.turns > 0 { plain.turns } else { own.turns };
+            own.count = if plain.turns > 0 { plain.turns } else { own.turns };
         }
         return;
     }
@@ -259,6 +287,42 @@ fn count_turns([plain, forward, backward]: [&mut Lists; 3], both_ways: u8, onewa
     }
 }
 
+/// The lanes of both directions of a two-way road, and whether one list of widths covers the whole road. It does if it names
+/// no direction and no other list does. Other lists without a direction have no meaning on a two-way road.
+fn two_way(lists: &mut [Lists; 3], both_ways: u8) -> ([LaneTags; 2], bool) {
+    let [plain, forward, backward] = lists;
+    let whole_road = plain.measured() > 0 && forward.lanes() == 0 && backward.lanes() == 0;
+    let counted = forward.count.saturating_add(backward.count).saturating_add(both_ways);
+    if whole_road && plain.count == 0 && counted == 0 {
+        plain.count = plain.measured();
+    }
+    let mut tags = [forward, backward].map(|lists| {
+        let mut tags = lists.tags();
+        tags.bus = tags.bus.max(plain.bus.div_ceil(2));
+        tags.hov = tags.hov.max(plain.hov.div_ceil(2));
+        tags
+    });
+    if whole_road {
+        plain.give_widths(&mut tags[0]);
+    } else {
+        tags.iter_mut().for_each(|tags| tags.bound(plain.narrowest()));
+    }
+    (tags, whole_road)
+}
+
+/// The lanes of a road whose lanes all go one way at a time. Lists without a direction bound the widths, because their
+/// order is that of one direction.
+fn by_turns(lists: &[Lists; 3]) -> [LaneTags; 2] {
+    let [plain, forward, backward] = lists;
+    [forward, backward].map(|lists| {
+        let mut tags = lists.tags();
+        tags.bus = tags.bus.max(plain.bus.div_ceil(2));
+        tags.hov = tags.hov.max(plain.hov.div_ceil(2));
+        tags.bound(plain.narrowest());
+        tags
+    })
+}
+
 impl Placement {
     /// The same line, counted in the lanes against the node order.
     fn backward(self) -> Placement {
@@ -269,42 +333,29 @@ impl Placement {
     }
 }
 
-impl Lists {
-    /// The lists without a suffix, or else those with one.
-    fn or(self, other: Lists) -> Lists {
-        let lists = if self.listed > 0 { self } else { other };
-        Lists { count: if self.count > 0 { self.count } else { other.count }, bus: self.bus.max(other.bus), ..lists }
-    }
-
-    /// All lists of a direction must have the same length. Otherwise none is used.
-    fn agree(&mut self, count: usize, notes: &mut Notes) {
-        let count = count as u8;
-        if self.listed != 0 && self.listed != count {
-            notes.add(Note::BadLaneWidths);
-            self.unusable = true;
-        }
-        self.listed = count;
-    }
-
-    fn tags(self) -> LaneTags {
-        let Lists { count, bus, .. } = self;
-        if self.unusable {
-            return LaneTags { count, bus, ..LaneTags::default() };
-        }
-        LaneTags { count, listed: self.listed, closed: self.closed, width_steps: self.width_steps, bus }
-    }
+/// A length, with a comma or a point before its decimals.
+pub(super) fn readable(text: &str) -> Option<f32> {
+    value::metres(text).or_else(|| {
+        let (whole, rest) = text.split_once(',')?;
+        let decimals = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        // Three digits after a comma may be thousands.
+        if (1..=2).contains(&decimals) { value::metres(&format!("{whole}.{rest}")) } else { None }
+    })
 }
 
-fn width(text: &str, notes: &mut Notes) -> Option<Millimetres> {
-    usable_width(value::metres(text).unwrap_or_default(), notes)
-}
-
-fn usable_width(metres: f32, notes: &mut Notes) -> Option<Millimetres> {
-    let width = Some(metres).filter(|width| CARRIAGEWAY_M.contains(width)).and_then(Millimetres::from_metres);
-    if width.is_none() {
-        notes.add(Note::BadWidth);
+/// The least length of a list, of a range or of an approximation: `3;4`, `3-4`, `~3`, `ca. 3`, `3+`. `None` if a part cannot
+/// be read. What lies below a length (`<3`) is unknown.
+fn least_of(text: &str) -> Option<f32> {
+    let text = text.trim();
+    let about = ["~", "≈", "±", ">=", ">", "ca.", "ca ", "approx.", "approx ", "about "];
+    let text = about.iter().find_map(|word| text.strip_prefix(word)).unwrap_or(text).trim();
+    let text = text.strip_suffix('+').unwrap_or(text);
+    let mut least: Option<f32> = None;
+    for part in text.split([';', '-', '–']) {
+        let metres = readable(part)?;
+        least = Some(least.map_or(metres, |least| least.min(metres)));
     }
-    width
+    least
 }
 
 fn placement(text: &str, direction: Direction) -> Option<Placement> {
@@ -324,9 +375,4 @@ fn placement(text: &str, direction: Direction) -> Option<Placement> {
 /// Index into `[without, forward, backward]`.
 fn side_index(suffix: &str) -> Option<usize> {
     ["", "forward", "backward"].iter().position(|side| *side == suffix)
-}
-
-/// As [`side_index`], for `lanes`, `lanes:forward`, `lanes:backward`.
-fn list_index(suffix: &str) -> Option<usize> {
-    ["lanes", "lanes:forward", "lanes:backward"].iter().position(|side| *side == suffix)
 }

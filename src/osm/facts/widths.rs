@@ -3,15 +3,17 @@
 //! The evidence in order of precedence is `width:carriageway`, `width`, `est_width` or `width:lanes`, then tagged lanes
 //! times an assumed lane width, then class and country. Parking, cycle lanes and shoulders are deducted from a tagged
 //! carriageway; they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement`
-//! says otherwise. If tags contradict each other, the narrower reading counts.
+//! says otherwise. If tags contradict each other, the narrower reading counts. A width counts however small it is: no
+//! assumed width replaces it.
 
 use crate::osm::facts::country::Place;
 use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
 use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
-use crate::osm::facts::section::{Decimetres, Kerb, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
+use crate::osm::facts::section::{Decimetres, Kerb, Mark, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
 use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
 
-/// Bounds of lane widths, metres. Outside them the width or the lane count is wrong.
+/// Bounds of the widths of lanes for cars and lorries, metres. Outside them the width or the lane count is wrong, or the lane
+/// may be for cycles.
 pub(super) const LANE_M: std::ops::RangeInclusive<f32> = 1.8..=6.0;
 /// Below this width (metres) both directions share a two-way road without tagged lanes, because no centre line is
 /// marked.
@@ -30,7 +32,7 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64
         tags: &facts.section,
         // A ramp has one lane unless tagged otherwise, whatever its class.
         class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
-        lane_m: rules.lane_m(facts.class, place.country),
+        lane_m: untagged_lane_m(facts, place, rules),
         single_m: if facts.roundabout {
             rules.ring_m(place.country, ring_radius_m)
         } else {
@@ -43,13 +45,20 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64
     match facts.oneway {
         Oneway::Forward => [one(Direction::Forward), NO_SECTION],
         Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
-        Oneway::No if facts.section.reversible => [one(Direction::Forward), one(Direction::Backward)],
+        Oneway::No if facts.section.is(Mark::Reversible) => [one(Direction::Forward), one(Direction::Backward)],
         Oneway::No => {
             let layout = builder.two_way();
             [Direction::Forward, Direction::Backward]
                 .map(|direction| layout.section(direction, place.left_hand_traffic))
         }
     }
+}
+
+/// The assumed width of a lane. Those of a narrow road of unknown width are no wider than a narrow road.
+fn untagged_lane_m(facts: &WayFacts, place: &Place, rules: &Rules) -> f32 {
+    let lane_m = rules.lane_m(facts.class, place.country);
+    let narrow = facts.section.is(Mark::Narrow) && facts.section.carriageway.is_none();
+    if narrow { lane_m.min(rules.kerb.narrow_m) } else { lane_m }
 }
 
 /// Lays out a way's cross section. `lanes` determines the lanes.
@@ -77,15 +86,19 @@ impl Builder<'_> {
         if let Some(room) = &tagged
             && given_m(&lanes) > room.width_m + LISTED_SLACK_M
         {
-            lanes.iter_mut().for_each(|lane| lane.width_m = None);
+            lanes.iter_mut().for_each(|lane| (lane.most_m, lane.listed) = (lane.width_m.take(), false));
         }
         if lanes.iter().all(|lane| lane.width_m.is_some()) {
-            let source = self.tags.source.min(WidthSource::Tagged);
+            let source = self.listed_source();
             return self.limited(self.finish(lanes, source, source));
+        }
+        // What cannot be read may say less than an assumed width.
+        if self.tags.is(Mark::Unreadable) {
+            return Layout::default();
         }
         self.give_cycle_lanes_width(&mut lanes);
         if let Some(room) = tagged {
-            if room.width_m < *LANE_M.start() {
+            if room.width_m <= 0.0 {
                 return Layout::default();
             }
             if let Some(layout) = self.share_out(&lanes, &room, known, two_way) {
@@ -94,10 +107,13 @@ impl Builder<'_> {
         }
         let source = if known { WidthSource::FromLanes } else { WidthSource::Assumed };
         let each_m = assumed_m.map_or(self.lane_m, |all_m| all_m / unknown(&lanes).max(1.0));
-        for lane in &mut lanes {
-            lane.width_m = lane.width_m.or(Some(each_m));
-        }
+        let lanes = lanes.into_iter().map(|lane| lane.with_share(each_m)).collect();
         self.limited(self.finish(lanes, source, source))
+    }
+
+    /// The evidence of lanes whose width a list gives.
+    fn listed_source(&self) -> WidthSource {
+        self.tags.source.min(WidthSource::Tagged)
     }
 
     /// Shares a tagged width out among the lanes. `None` if the lanes would be too wide to be the tagged ones.
@@ -109,14 +125,17 @@ impl Builder<'_> {
             return None;
         }
         let narrow = each_m < *LANE_M.start() || (two_way && !known && room.width_m < SHARED_BELOW_M);
-        if narrow && !shared_already {
+        // Lanes of known width stay; the others have what is left, however little.
+        let listed = lanes.iter().any(|lane| lane.listed);
+        if narrow && !shared_already && !listed {
             return Some(self.one_for_all(lanes, left_m, room, known, two_way));
         }
+        let each_m = each_m.max(0.0);
         let mut out = Vec::with_capacity(lanes.len() + 2);
         for lane in lanes {
             match lane.of {
                 Some(direction) if !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M => {
-                    let part = |width_m| Segment { width_m: Some(width_m), ..*lane };
+                    let part = |width_m| lane.with_share(width_m);
                     let (at_kerb, rest) = (part(WIDEST_UNTAGGED_LANE_M), part(each_m - WIDEST_UNTAGGED_LANE_M));
                     if kerb_on_the_left_of_the_way(direction, self.left_hand_traffic) {
                         out.extend([at_kerb, rest]);
@@ -124,7 +143,7 @@ impl Builder<'_> {
                         out.extend([rest, at_kerb]);
                     }
                 }
-                _ => out.push(Segment { width_m: lane.width_m.or(Some(each_m)), ..*lane }),
+                _ => out.push(lane.with_share(each_m)),
             }
         }
         let divided = if known || out.len() == 1 { room.source } else { room.source.min(WidthSource::Estimated) };
@@ -136,14 +155,12 @@ impl Builder<'_> {
     fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, two_way: bool) -> Layout {
         let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
         let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
-        if width_m < *LANE_M.start() {
+        let most_m = lanes.iter().filter_map(|lane| lane.most_m).reduce(f32::min);
+        let width_m = most_m.map_or(width_m, |most_m| most_m.min(width_m));
+        if width_m <= 0.0 {
             return Layout::default();
         }
-        let one = if two_way {
-            Segment { width_m: Some(width_m), ..SHARED }
-        } else {
-            Segment { width_m: Some(width_m), ..*open }
-        };
+        let one = Segment { width_m: Some(width_m), ..if two_way { SHARED } else { *open } };
         let source = if width_m < left_m { room.source.min(WidthSource::FromLanes) } else { room.source };
         let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
         let whole = Room { source, ..*room };
@@ -188,7 +205,7 @@ impl Builder<'_> {
             (if shoulders { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
         ] {
             if dm > 0 {
-                inwards.push(Segment { width_m: Some(metres(dm, default_m)), of: None, used });
+                inwards.push(Segment { width_m: Some(metres(dm, default_m)), ..Segment::new(None, used) });
             }
         }
         inwards
@@ -213,7 +230,9 @@ impl Builder<'_> {
         let weakest =
             if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
         let placement = self.tags.placement;
-        Layout { segments, whole: Some(whole.min(weakest)), divided: Some(divided.min(weakest)), placement }
+        let [whole, divided, listed] =
+            [whole, divided, self.listed_source()].map(|source| Some(source.min(weakest)));
+        Layout { segments, whole, divided, listed, placement }
     }
 
     /// Applies `maxwidth:physical` as an upper bound of the paved width. All lanes shrink alike, or one lane is left.
@@ -226,6 +245,7 @@ impl Builder<'_> {
         }
         let bounded = |source: Option<WidthSource>| source.map(|source| source.min(WidthSource::Tagged));
         (layout.whole, layout.divided) = (bounded(layout.whole), bounded(layout.divided));
+        layout.listed = bounded(layout.listed);
         let mut shrunk =
             layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).map(|m| m * most_m / paved_m);
         if shrunk.all(|width_m| width_m >= *LANE_M.start()) {
@@ -241,7 +261,11 @@ impl Builder<'_> {
             (false, true) => Use::Lane(Direction::Backward),
             (false, false) => return Layout::default(),
         };
-        let one = Segment { width_m: Some(most_m.min(self.lane_m)), of: None, used };
+        // No lane for all is wider than what a list gives one of them.
+        let listed_m = layout.segments.iter().filter(|s| s.listed).filter_map(|s| s.width_m);
+        let bounds_m = listed_m.chain(layout.segments.iter().filter_map(|s| s.most_m));
+        let width_m = bounds_m.fold(most_m.min(self.lane_m), f32::min);
+        let one = Segment { width_m: Some(width_m), ..Segment::new(None, used) };
         Layout { segments: vec![one], placement: Placement::Middle, ..layout }
     }
 }

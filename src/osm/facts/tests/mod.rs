@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod legal;
+mod lists;
+mod narrow;
 mod properties;
 mod sections;
 mod ways;
