@@ -71,8 +71,8 @@ pub(crate) const MIDDLE: usize = 2;
 
 /// Knot spacing of the profile, metres. A narrow place affects four knots to each side.
 pub(crate) const KNOT_M: f64 = 2.5;
-/// Least width of a corridor, metres. No vehicle fits, but left stays left of right.
-pub(crate) const LEAST_WIDTH_M: f64 = 0.2;
+/// Least width of a corridor, metres. No vehicle fits, because none is as narrow, but left stays left of right.
+pub(crate) const LEAST_WIDTH_M: f64 = 0.05;
 /// Half of a narrow place's own length, metres.
 const GAP_HALF_M: f64 = 0.5;
 /// Coefficients to each side over which strips are eroded. Two running means of half that reach then smooth them. With

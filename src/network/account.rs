@@ -19,6 +19,8 @@ pub struct NetworkAccount {
     pub nodes_apart: u64,
     /// Ways left out: all nodes are at one place.
     pub one_place: u64,
+    /// Ways at places of no known country. Their driving side is assumed.
+    pub no_country: u64,
     /// Node references without a node in the file.
     pub missing_references: u64,
     /// Nodes merged with a neighbour at the same place.
@@ -135,6 +137,7 @@ impl NetworkAccount {
         self.no_node_in_file += part.no_node_in_file;
         self.nodes_apart += part.nodes_apart;
         self.one_place += part.one_place;
+        self.no_country += part.no_country;
         self.directions += part.directions;
         self.edges += part.edges;
         self.not_driven += part.not_driven;
@@ -153,6 +156,7 @@ impl NetworkAccount {
             ("way", "left_out", "no_node_in_file", self.no_node_in_file),
             ("way", "left_out", "nodes_apart", self.nodes_apart),
             ("way", "left_out", "one_place", self.one_place),
+            ("way", "noted", "country_unknown", self.no_country),
             ("node", "noted", "missing_reference", self.missing_references),
             ("node", "noted", "same_place_merged", self.same_place_nodes),
             ("node", "noted", "crowded", self.crowded_nodes),

@@ -33,18 +33,21 @@ impl Block {
     /// Whether a stroke in the surroundings of this block may begin in the other one. Surroundings end within the second cell beyond a
     /// block, and a stroke begins at most one cell before.
     pub(super) fn needs(&self, other: &Self) -> bool {
-        const CELLS: u32 = 3;
-        let meet = |a: &RangeInclusive<u32>, b: &RangeInclusive<u32>| {
-            a.start().saturating_sub(CELLS) <= *b.end() && b.start().saturating_sub(CELLS) <= *a.end()
+        const CELLS: i64 = 3;
+        let meet = |a: &RangeInclusive<u32>, b: &RangeInclusive<u32>, by: i64| {
+            let [a_start, a_end, b_start, b_end] = [a.start(), a.end(), b.start(), b.end()].map(|&at| i64::from(at));
+            a_start + by - CELLS <= b_end && b_start - CELLS <= a_end + by
         };
-        meet(&self.x, &other.x) && meet(&self.y, &other.y)
+        // The grid goes on beyond the 180th meridian.
+        let around = 1 << ZOOM;
+        meet(&self.y, &other.y, 0) && [0, around, -around].into_iter().any(|by| meet(&self.x, &other.x, by))
     }
 
     /// The extent of all that its edges, strokes and turns depend on: its cells, their neighbours and 1 km more.
     pub(super) fn surroundings(&self) -> Extent {
         let last = (1 << ZOOM) - 1;
-        let (west, north) = corner_deg(self.x.start().saturating_sub(1), self.y.start().saturating_sub(1));
-        let (east, south) = corner_deg((self.x.end() + 1).min(last) + 1, (self.y.end() + 1).min(last) + 1);
+        let (west, north) = corner_deg(i64::from(*self.x.start()) - 1, self.y.start().saturating_sub(1));
+        let (east, south) = corner_deg(i64::from(*self.x.end()) + 2, (self.y.end() + 1).min(last) + 1);
         let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
         // Positions beyond the grid's northern and southern borders are in its outermost cells.
         let south = if *self.y.end() + 1 >= last { -90.0 } else { south };
@@ -118,6 +121,16 @@ mod tests {
             Extent::of([at].into_iter()).is_some_and(|place| place.meets(extent))
         };
         let ((west, north), (east, south)) = (corner_deg(1072, 698), corner_deg(1076, 701));
+        // The neighbours of the last column are those of the first one.
+        let [first, last] = [0..=0, 2047..=2047].map(|x| Block { x, y: 699..=699 });
+        assert!(first.needs(&last) && last.needs(&first));
+        for (block, inside_deg, outside_deg) in [(&first, 179.83, 179.7), (&last, -179.83, -179.7)] {
+            let has = |lon: f64| {
+                let at = LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: 493_000_000 };
+                Extent::of([at].into_iter()).is_some_and(|place| place.meets(block.surroundings()))
+            };
+            assert!(has(inside_deg) && !has(outside_deg) && has(180.0) && has(-180.0));
+        }
         let degree = 111_195.0;
         let (lat, lon) = (990.0 / degree, 990.0 / degree / 49.5_f64.to_radians().cos());
         for (inside, at) in [

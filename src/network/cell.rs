@@ -32,9 +32,10 @@ impl Cell {
 }
 
 /// The place of the grid's line between a cell and its neighbours to the west or north, degrees: longitude of a column, latitude of a row.
-pub(super) fn corner_deg(x: u32, y: u32) -> (f64, f64) {
-    let share = |index: u32| f64::from(index) / f64::from(1_u32 << ZOOM);
-    ((share(x) - 0.5) * 360.0, (PI * (1.0 - 2.0 * share(y))).sinh().atan().to_degrees())
+/// Columns count on beyond the 180th meridian.
+pub(super) fn corner_deg(x: i64, y: u32) -> (f64, f64) {
+    let cells = f64::from(1_u32 << ZOOM);
+    ((x as f64 / cells - 0.5) * 360.0, (PI * (1.0 - 2.0 * f64::from(y) / cells)).sinh().atan().to_degrees())
 }
 
 #[cfg(test)]

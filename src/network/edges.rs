@@ -86,6 +86,7 @@ where
         let place = (self.places)(self.position(first));
         let positions = || cut.line.iter().map(|&v| self.position(v));
         let ring_radius_m = if way.facts.roundabout { mean_radius_m(positions()) } else { None };
+        part.account.no_country += u64::from(place.country == Place::NOWHERE.country);
         let road = road(way, &place, (self.sections)(&way.facts, &place, ring_radius_m));
         let base = part.network.shapes.len();
         part.network.shapes.extend(positions());
@@ -94,7 +95,21 @@ where
             self.add_piece(&road, cut, piece, base, part);
         }
         number(&mut part.network.edges[edges..], way.id);
+        if self.vertices.go_on_over_the_antimeridian() {
+            self.join_over_the_antimeridian(&cut.line, &mut part.network.edges[edges..], base);
+        }
         part.network.roads.push(road);
+    }
+
+    /// Gives the nodes at the 180th meridian the id that they have on both sides. Ids of edges do not depend on it: a file may have
+    /// one side only.
+    fn join_over_the_antimeridian(&self, line: &[u32], edges: &mut [Edge], base: usize) {
+        for edge in edges {
+            let ends = [edge.shape.start as usize, edge.shape.end as usize - 1].map(|at| line[at - base]);
+            let [first, last] = ends.map(|v| self.vertices.id(self.nodes, v));
+            let forward = edge.direction == Direction::Forward;
+            (edge.from_node, edge.to_node) = if forward { (first, last) } else { (last, first) };
+        }
     }
 
     fn add_piece(&self, road: &Road, cut: &CutWay, piece: &Piece, base: usize, part: &mut Part) {

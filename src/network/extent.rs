@@ -39,7 +39,11 @@ impl Extent {
         }
     }
 
+    /// Whether two boxes have a place in common. A box may reach over the 180th meridian, beyond which it counts on.
     pub(super) fn meets(self, other: Self) -> bool {
-        self.west <= other.east && other.west <= self.east && self.south <= other.north && other.south <= self.north
+        const TURN_E7: i64 = 3_600_000_000;
+        let [west, east, other_west, other_east] = [self.west, self.east, other.west, other.east].map(i64::from);
+        let meets = |by: i64| west + by <= other_east && other_west <= east + by;
+        self.south <= other.north && other.south <= self.north && (meets(0) || meets(TURN_E7) || meets(-TURN_E7))
     }
 }

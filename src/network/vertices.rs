@@ -1,7 +1,8 @@
 //! Node references become vertices: indices into the node table, with nodes at one place merged into one vertex.
 //!
 //! Two consecutive located vertices of a way, if different, have different places, so no edge has zero length. Nodes at
-//! one place that no way joins (a bridge over a road) stay separate.
+//! one place that no way joins (a bridge over a road) stay separate. The 180th meridian is one place with two longitudes: roads
+//! that end there on either side are one road, so their nodes are one node with two vertices.
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -22,6 +23,8 @@ pub(super) struct Vertices {
     points: FxHashMap<u32, PointFacts>,
     /// For each merged node the node that replaces it. Never iterated, because its order is not fixed.
     same: FxHashMap<u32, u32>,
+    /// For each vertex at the 180th meridian the one at its place on the other side. Never iterated.
+    across: FxHashMap<u32, u32>,
     /// Number of references without a position.
     pub(super) missing: u64,
     /// Number of nodes merged with an earlier one at the same place.
@@ -46,8 +49,23 @@ impl Vertices {
         }
         let mut marks = vec![0; nodes.ids.len()];
         mark_uses(ways, &of_refs, &mut marks);
-        let points = point_facts(points, nodes, &same, &mut marks);
-        Self { of_refs, marks, points, missing, merged: same.len() as u64, same }
+        let across = over_the_antimeridian(ways, &of_refs, nodes);
+        for &v in across.keys() {
+            marks[v as usize] |= USED_AGAIN;
+        }
+        let points = point_facts(points, nodes, [&same, &across], &mut marks);
+        Self { of_refs, marks, points, missing, merged: same.len() as u64, same, across }
+    }
+
+    /// Whether roads go on over the 180th meridian.
+    pub(super) fn go_on_over_the_antimeridian(&self) -> bool {
+        !self.across.is_empty()
+    }
+
+    /// The id of a vertex's node, alike on both sides of the 180th meridian.
+    pub(super) fn id(&self, nodes: &NodeTable, vertex: u32) -> i64 {
+        let id = nodes.ids[vertex as usize];
+        self.across.get(&vertex).map_or(id, |&other| id.min(nodes.ids[other as usize]))
     }
 
     /// Whether more than one stretch of road meets here: several ways use the node, or one way uses it several times.
@@ -58,7 +76,7 @@ impl Vertices {
     /// The node that replaces this one in the network, if the file has it.
     pub(super) fn node(&self, nodes: &NodeTable, id: i64) -> Option<i64> {
         let v = located(nodes, id);
-        (v != MISSING).then(|| nodes.ids[*self.same.get(&v).unwrap_or(&v) as usize])
+        (v != MISSING).then(|| self.id(nodes, *self.same.get(&v).unwrap_or(&v)))
     }
 
     /// The facts from the tags of the vertex's nodes, if any node has relevant tags.
@@ -158,6 +176,30 @@ fn root(parent: &mut FxHashMap<u32, u32>, mut v: u32) -> u32 {
     v
 }
 
+/// The vertices at the 180th meridian where roads end on both sides at the same latitude, each with the other one. Where several
+/// roads end at one place on one side, which of them goes on is unknown.
+fn over_the_antimeridian(ways: &[Way], of_refs: &[u32], nodes: &NodeTable) -> FxHashMap<u32, u32> {
+    const EAST_E7: i32 = 1_800_000_000;
+    let ends = |way: &Way| {
+        let refs = of_way(of_refs, way);
+        [refs.first().copied(), refs.last().copied()].into_iter().flatten().filter(|&v| v != MISSING)
+    };
+    let place = |v: u32| nodes.places[v as usize].filter(|place| place.lon_e7.abs() == EAST_E7);
+    let mut found: Vec<(i32, i32, u32)> =
+        ways.par_iter().flat_map_iter(ends).filter_map(|v| place(v).map(|at| (at.lat_e7, at.lon_e7, v))).collect();
+    found.sort_unstable();
+    found.dedup();
+    let mut across = FxHashMap::default();
+    for here in found.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, west, a), (_, east, b)] = *here
+            && west != east
+        {
+            across.extend([(a, b), (b, a)]);
+        }
+    }
+    across
+}
+
 fn mark_uses(ways: &[Way], of_refs: &[u32], marks: &mut [u8]) {
     for way in ways {
         let mut last = MISSING;
@@ -174,7 +216,7 @@ fn mark_uses(ways: &[Way], of_refs: &[u32], marks: &mut [u8]) {
 fn point_facts(
     points: &[(i64, PointFacts)],
     nodes: &NodeTable,
-    same: &FxHashMap<u32, u32>,
+    [same, across]: [&FxHashMap<u32, u32>; 2],
     marks: &mut [u8],
 ) -> FxHashMap<u32, PointFacts> {
     let mut by_vertex: FxHashMap<u32, PointFacts> = FxHashMap::default();
@@ -184,8 +226,10 @@ fn point_facts(
             continue;
         }
         let v = *same.get(&v).unwrap_or(&v);
-        marks[v as usize] |= TAGGED;
-        by_vertex.entry(v).and_modify(|known| *known = both(known, facts)).or_insert_with(|| facts.clone());
+        for v in [Some(v), across.get(&v).copied()].into_iter().flatten() {
+            marks[v as usize] |= TAGGED;
+            by_vertex.entry(v).and_modify(|known| *known = both(known, facts)).or_insert_with(|| facts.clone());
+        }
     }
     by_vertex
 }

@@ -1,6 +1,7 @@
 //! From a file to a network and its use: the reader's rules, drawn maps, turns, roundabouts, routes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod antimeridian;
 mod areas;
 mod backdrop;
 mod bends;

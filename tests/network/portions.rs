@@ -67,7 +67,7 @@ fn restrictions(portion: &Portion) -> Vec<String> {
 }
 
 /// Returns the number of portions.
-fn compare(extract: &Extract, most: u64) -> usize {
+pub(crate) fn compare(extract: &Extract, most: u64) -> usize {
     let countries = Countries::load().unwrap();
     let (whole, account) = ground(extract.clone(), &countries).whole();
     let ground = ground(extract.clone(), &countries);

@@ -51,8 +51,8 @@ impl Builder<'_> {
         let (mut forward, mut backward) = (*self.lane_tags(Direction::Forward), *self.lane_tags(Direction::Backward));
         let listed = forward.listed > 0 || backward.listed > 0;
         let known = self.tags.tagged_lanes().is_some() || listed;
-        let single =
-            self.tags.is(Mark::Alternating) || (self.tags.tagged_lanes() == Some(1) && (!listed || self.tags.is(Mark::WholeRoad)));
+        let single = self.tags.is(Mark::Alternating)
+            || (self.tags.tagged_lanes() == Some(1) && (!listed || self.tags.is(Mark::WholeRoad)));
         let unmarked = !known && (self.class.shared_m.is_some() || self.tags.is(Mark::Narrow));
         if single || unmarked {
             let assumed_m = match (self.tags.is(Mark::Narrow), self.class.shared_m) {
@@ -91,7 +91,8 @@ impl Builder<'_> {
 
     /// The lane that both directions share. It is no wider than any width that a list gives.
     fn shared(&self, directions: &[LaneTags; 2]) -> Segment {
-        let listed = directions.iter().filter_map(|tags| tags.narrowest_m().into_iter().chain(tags.most_m(0)).reduce(f32::min));
+        let listed =
+            directions.iter().filter_map(|tags| tags.narrowest_m().into_iter().chain(tags.most_m(0)).reduce(f32::min));
         let most_m = listed.reduce(f32::min);
         if self.tags.is(Mark::WholeRoad) && directions[0].listed == 1 {
             return Segment { width_m: most_m, listed: most_m.is_some(), ..SHARED };

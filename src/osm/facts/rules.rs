@@ -107,6 +107,7 @@ pub struct Rules {
     pub(super) kerb: KerbRule,
     /// Sorted codes of ISO 3166-1 or 3166-2.
     pub(super) left: Vec<String>,
+    pub(super) right: Vec<String>,
 }
 
 impl Rules {
@@ -168,6 +169,12 @@ impl Rules {
     pub fn drives_on_the_left(&self, code: &str) -> bool {
         self.left.binary_search_by(|left| left.as_str().cmp(code)).is_ok()
     }
+
+    /// Whether traffic is known to keep to the right there.
+    #[must_use]
+    pub fn drives_on_the_right(&self, code: &str) -> bool {
+        self.right.binary_search_by(|right| right.as_str().cmp(code)).is_ok()
+    }
 }
 
 /// `AU` as two bytes. `None` for anything but two capital letters.
@@ -208,6 +215,8 @@ mod tests {
             ("country.US", "country.usa", "country usa: not an ISO 3166-1 code"),
             ("lanes = 2", "lanes = 2\nlane = 2", "unknown field"),
             ("sources = [", "sources = [\"nowhere\", ", "\"nowhere\" is not listed"),
+            ("right = [", "right = [\"AU\", ", "driving_side: AU is in both lists"),
+            ("right = [", "rights = [", "rights"),
         ] {
             let text = BUILTIN.replace(from, to);
             assert_ne!(text, BUILTIN, "{from}");

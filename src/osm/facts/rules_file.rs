@@ -69,6 +69,7 @@ struct KerbEntry {
 struct DrivingSide {
     sources: Vec<String>,
     left: Vec<String>,
+    right: Vec<String>,
 }
 
 impl File {
@@ -82,10 +83,14 @@ impl File {
         let (countries, country_rings) = (self.countries(&classes)?, self.country_rings()?);
         let (ramps_m, kerb) = (self.ramps_m()?, self.kerb()?);
         self.known(&self.driving_side.sources, "driving_side")?;
-        let mut left = self.driving_side.left;
+        let DrivingSide { mut left, mut right, .. } = self.driving_side;
         left.sort_unstable();
+        right.sort_unstable();
+        if let Some(code) = left.iter().find(|code| right.binary_search(code).is_ok()) {
+            return Err(format!("driving_side: {code} is in both lists"));
+        }
         let ring_m = self.ring.map(|ring| ring.width_m);
-        Ok(Rules { classes, countries, ring_m, country_rings, ramps_m, kerb, left })
+        Ok(Rules { classes, countries, ring_m, country_rings, ramps_m, kerb, left, right })
     }
 
     fn known(&self, sources: &[String], of: &str) -> Result<(), String> {

@@ -177,7 +177,10 @@ impl SectionTags {
 
     pub(super) fn tagged_lanes(&self) -> Option<u8> {
         let by_direction = self.directions[0].count.saturating_add(self.directions[1].count);
-        let lanes = if self.lanes > 0 { self.lanes } else { by_direction.saturating_add(self.both_ways) };
-        (lanes > 0).then_some(lanes)
+        if self.lanes > 0 {
+            return Some(self.lanes);
+        }
+        // A lane for both directions alone says nothing of the others.
+        (by_direction > 0).then_some(by_direction.saturating_add(self.both_ways))
     }
 }

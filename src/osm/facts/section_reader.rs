@@ -4,8 +4,8 @@
 //! it may say less than an assumed one. If two tags contradict each other, the narrower reading counts.
 
 use crate::osm::facts::kerb_reader::KerbReader;
-use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::lane_lists::{Lists, list_index};
+use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section::{LaneLine, LaneTags, Mark, Marks, Millimetres, Placement, SectionTags};
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{Direction, Oneway, WidthSource, value};
@@ -126,9 +126,9 @@ impl SectionReader {
     }
 
     fn lanes(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
-        let kind = ["psv", "bus", "hov"].into_iter().find(|kind| {
-            suffix.strip_prefix(kind).is_some_and(|rest| rest.is_empty() || rest.starts_with(':'))
-        });
+        let kind = ["psv", "bus", "hov"]
+            .into_iter()
+            .find(|kind| suffix.strip_prefix(kind).is_some_and(|rest| rest.is_empty() || rest.starts_with(':')));
         let side = kind.map_or(suffix, |kind| suffix[kind.len()..].trim_start_matches(':'));
         let slot = match side {
             "both_ways" if kind.is_none() => None,

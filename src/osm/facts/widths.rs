@@ -230,8 +230,7 @@ impl Builder<'_> {
         let weakest =
             if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
         let placement = self.tags.placement;
-        let [whole, divided, listed] =
-            [whole, divided, self.listed_source()].map(|source| Some(source.min(weakest)));
+        let [whole, divided, listed] = [whole, divided, self.listed_source()].map(|source| Some(source.min(weakest)));
         Layout { segments, whole, divided, listed, placement }
     }
 

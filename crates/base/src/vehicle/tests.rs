@@ -68,6 +68,68 @@ fn the_catalogue_relies_on_no_default() {
     }
 }
 
+/// What laws and tables state in pounds, feet and inches.
+#[test]
+fn no_value_is_rounded_up_over_its_law() {
+    const POUND_T: f64 = 0.000_453_592_37;
+    const FOOT_M: f64 = 0.3048;
+    let catalogue = Catalogue::builtin().unwrap();
+    let close = |value: f64, law: f64, what: &str| {
+        assert!(value <= law + 1e-9 && value > law - 0.02, "{what}: {value} of {law}");
+    };
+    for (id, pounds, axle_pounds, width_ft, length_ft, height_ft) in [
+        ("US-WB40", 80e3, 20e3, 8.0, 45.5, 13.5),
+        ("US-WB50", 80e3, 20e3, 8.5, 55.0, 13.5),
+        ("US-WB62", 80e3, 20e3, 8.5, 69.0, 13.5),
+        ("US-WB67", 80e3, 20e3, 8.5, 73.5, 13.5),
+        ("US-WB67D", 80e3, 20e3, 8.5, 72.3, 13.5),
+        ("US-WB92D", 129e3, 20e3, 8.5, 97.3, 13.5),
+        ("US-WB100T", 115e3, 20e3, 8.5, 104.8, 13.5),
+        ("US-WB109D", 147e3, 20e3, 8.5, 114.0, 13.5),
+        ("BUS-ART18-AASHTO", 64e3, 24e3, 8.5, 60.0, 11.0),
+    ] {
+        let v = catalogue.get(id).unwrap();
+        close(v.gross_mass_t.unwrap(), pounds * POUND_T, id);
+        close(v.axle_load_t.unwrap(), axle_pounds * POUND_T, id);
+        close(v.width_m(), width_ft * FOOT_M, id);
+        close(v.length_m, length_ft * FOOT_M, id);
+        close(v.height_m.unwrap(), height_ft * FOOT_M, id);
+    }
+    // Laws in metres and kilograms.
+    for (region, width_m, height_m, axle_t) in [("CA", 2.6, 4.15, 9.1), ("AU", 2.5, 4.3, 8.25), ("EU", 2.55, 4.0, 11.5)]
+    {
+        for v in catalogue.region(region) {
+            assert!(
+                v.width_m() <= width_m && v.height_m.unwrap() <= height_m && v.axle_load_t.unwrap() <= axle_t,
+                "{}",
+                v.id
+            );
+        }
+    }
+    for (id, gross_t, length_m) in [
+        ("CA-SEMI23", 46.5, 23.0),
+        ("CA-BTRAIN25", 63.5, 25.0),
+        ("CA-RMD31", 63.5, 31.0),
+        ("CA-TPD41", 63.5, 41.0),
+        ("CA-TRIPLE35", 53.5, 35.0),
+        ("AU-SEMI19", 42.5, 19.0),
+        ("AU-BDOUBLE26", 62.5, 26.0),
+        ("AU-ADOUBLE36", 79.0, 36.5),
+        ("AU-BTRIPLE36", 82.5, 36.5),
+        ("AU-ABTRIPLE44", 99.0, 44.0),
+        ("AU-ATRIPLE53", 115.5, 53.5),
+        ("EU-SEMI16.5", 40.0, 16.5),
+        ("EU-DRAWBAR18.75", 40.0, 18.75),
+        ("EU-CAT18.75", 40.0, 18.75),
+        ("EU-EMS25-D", 60.0, 25.25),
+        ("EU-EMS25-B", 60.0, 25.25),
+        ("EU-EMS25-C", 60.0, 25.25),
+    ] {
+        let v = catalogue.get(id).unwrap();
+        assert!(v.gross_mass_t.unwrap() <= gross_t && v.length_m <= length_m, "{id}");
+    }
+}
+
 #[test]
 fn the_type_2_road_train_is_three_trailers_on_two_dollies() {
     let catalogue = Catalogue::builtin().unwrap();

@@ -103,6 +103,49 @@ fn limits_forbid_or_leave_unknown() {
 }
 
 #[test]
+fn a_vehicle_at_the_limit_of_its_law_passes_the_sign_with_that_limit() {
+    use ForbiddenReason::{AxleLoad, Height, Length, Weight, Width};
+    let catalogue = crate::vehicle::Catalogue::builtin().unwrap();
+    for (id, tag, expected) in [
+        ("US-WB67", "maxweight=40_st", None),
+        ("US-WB67", "maxweight=80000_lbs", None),
+        ("US-WB67", "maxweight=39_st", Some(Weight)),
+        ("US-WB67", "maxweight=79900_lbs", Some(Weight)),
+        ("US-WB92D", "maxweight=129000_lbs", None),
+        ("US-WB100T", "maxweight=115000_lbs", None),
+        ("US-WB109D", "maxweight=147000_lbs", None),
+        ("US-WB109D", "maxweight=146900_lbs", Some(Weight)),
+        ("US-WB67", "maxaxleload=20000_lbs", None),
+        ("US-WB67", "maxaxleload=10_st", None),
+        ("US-WB67", "maxaxleload=8_st", Some(AxleLoad)),
+        ("BUS-ART18-AASHTO", "maxaxleload=24000_lbs", None),
+        ("US-WB40", "maxwidth=8'", None),
+        ("US-WB67", "maxwidth=8'", Some(Width)),
+        ("US-WB67", "maxwidth=8'6\"", None),
+        ("US-WB67", "maxheight=13'6\"", None),
+        ("US-WB67", "maxheight=13'5\"", Some(Height)),
+        ("US-WB40", "maxlength=45_ft_6_in", None),
+        ("US-WB50", "maxlength=55'", None),
+        ("US-WB62", "maxlength=69'", None),
+        ("US-WB67", "maxlength=73'6\"", None),
+        ("US-WB109D", "maxlength=114'", None),
+        ("US-WB109D", "maxlength=113'", Some(Length)),
+        ("BUS-ART18-AASHTO", "maxlength=60'", None),
+        ("EU-SEMI16.5", "maxweight=40", None),
+        ("EU-SEMI16.5", "maxlength=16.5", None),
+        ("EU-SEMI16.5", "maxwidth=2.55", None),
+        ("CA-SEMI23", "maxwidth=2.6", None),
+        ("AU-ATRIPLE53", "maxweight=115.5", None),
+    ] {
+        let (key, value) = tag.split_once('=').unwrap();
+        let value = value.replace('_', " ");
+        let legal = way_facts(&[("highway", "primary"), (key, &value)]).unwrap().facts.legal_forward;
+        let said = legal.forbids(catalogue.get(id).unwrap());
+        assert_eq!(said, expected.map(Verdict::Forbidden), "{id} {tag}");
+    }
+}
+
+#[test]
 fn nodes_bar_narrow_and_limit() {
     for (text, barred, passage_m) in [
         ("barrier=bollard", true, None),
