@@ -9,6 +9,8 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
+use rustc_hash::FxHashSet;
+
 use super::onward::Onward;
 use super::sides::{Meant, meant};
 use super::vertices::Vertices;
@@ -279,8 +281,9 @@ impl Resolver<'_> {
         let edges = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
         let (from, to) = (edges(&restriction.from), edges(&restriction.to));
         let mut paths = Vec::new();
+        let mut steps = 0;
         for &f in &from {
-            self.follow(&mut vec![f], via, Some(&to), &mut paths);
+            self.follow((&mut vec![f], &mut steps), via, Some(&to), &mut paths);
         }
         if paths.is_empty() && !to.is_empty() {
             let mut wander = Wander { resolver: self, via, to: &to, paths: Vec::new(), steps: 0 };
@@ -292,28 +295,43 @@ impl Resolver<'_> {
         if paths.is_empty() && (kind.only || restriction.to.is_empty()) {
             // Where the last way ends, every way on may be the wrong one.
             for &f in &from {
-                self.follow(&mut vec![f], via, None, &mut paths);
+                self.follow((&mut vec![f], &mut steps), via, None, &mut paths);
             }
             reading.no_destination |= !paths.is_empty();
         }
-        if paths.is_empty() {
+        // Not all paths were found: no movement onto the first way is left open.
+        let cut_short = if steps > MOST_STEPS { self.entries(&from, via) } else { Vec::new() };
+        reading.any_side |= !cut_short.is_empty();
+        if paths.is_empty() && cut_short.is_empty() {
             return None;
         }
-        if !kind.only {
-            return Some(paths);
+        if !kind.only || !cut_short.is_empty() {
+            return Some([paths, cut_short].concat());
         }
+        let begins: FxHashSet<&[u32]> = paths.iter().flat_map(|path| (1..=path.len()).map(|to| &path[..to])).collect();
         let mut forbidden = Vec::new();
         for path in &paths {
             let last = if reading.no_destination { path.len() + 1 } else { path.len() };
             for length in 1..last {
                 let prefix = &path[..length];
-                let on = |x: u32| paths.iter().any(|p| p.starts_with(prefix) && p.get(length) == Some(&x));
                 let end = self.network.edges[path[length - 1] as usize].to_node;
-                let others = self.leaving_at(end).iter().filter(|&&x| !on(x));
-                forbidden.extend(others.map(|&x| [prefix, &[x]].concat()));
+                let others = self.leaving_at(end).iter().map(|&x| [prefix, &[x]].concat());
+                forbidden.extend(others.filter(|other| !begins.contains(&other[..])));
+            }
+            if forbidden.len() > MOST_SEQUENCES {
+                break;
             }
         }
         Some(forbidden)
+    }
+
+    /// The movements from edges onto a way of `via`.
+    fn entries(&self, from: &[u32], via: &[i64]) -> Vec<Vec<u32>> {
+        let onto = |&f: &u32| {
+            let leaving = self.leaving_at(self.network.edges[f as usize].to_node).iter();
+            leaving.filter(|&&edge| via.contains(&self.way(edge))).map(move |&edge| vec![f, edge])
+        };
+        from.iter().flat_map(onto).collect()
     }
 
     /// Whether a path uses a way that is no member.
@@ -324,7 +342,13 @@ impl Resolver<'_> {
 
     /// Follows all paths from the end of `path` over the ways `via` to an edge of `to`, or to the end of the last way. Each way is
     /// driven in one direction.
-    fn follow(&self, path: &mut Vec<u32>, via: &[i64], to: Option<&[u32]>, paths: &mut Vec<Vec<u32>>) {
+    fn follow(
+        &self,
+        (path, steps): (&mut Vec<u32>, &mut usize),
+        via: &[i64],
+        to: Option<&[u32]>,
+        paths: &mut Vec<Vec<u32>>,
+    ) {
         let Some(&last) = path.last() else { return };
         let leaving = self.leaving_at(self.network.edges[last as usize].to_node);
         let Some((&way, rest)) = via.split_first() else {
@@ -343,10 +367,12 @@ impl Resolver<'_> {
             let mut edge = Some(first);
             while let Some(next) = edge.filter(|next| !path[length..].contains(next)) {
                 path.push(next);
-                if path.len() > MOST_VIA_EDGES || paths.len() > MOST_SEQUENCES {
+                // Dead ends count, too: over a way that is named often, their number grows with every edge.
+                *steps += 1;
+                if path.len() > MOST_VIA_EDGES || paths.len() > MOST_SEQUENCES || *steps > MOST_STEPS {
                     break;
                 }
-                self.follow(path, rest, to, paths);
+                self.follow((&mut *path, &mut *steps), rest, to, paths);
                 edge = self.along(next);
             }
             path.truncate(length);

@@ -460,3 +460,31 @@ fn real_restrictions_are_all_accounted_for() {
         assert!(edges.windows(2).all(joined), "{restriction:?}");
     }
 }
+
+/// Over 40 edges of a way that is named twenty times, 10¹¹ ways of driving it lead nowhere.
+#[test]
+fn a_way_that_is_named_often_takes_few_steps_and_leaves_nothing_open() {
+    let along: Vec<char> = (0..41).filter_map(|i| char::from_u32(u32::from('\u{4e00}') + i)).collect();
+    let crossing: Vec<char> = (0..41).filter_map(|i| char::from_u32(u32::from('\u{5e00}') + i)).collect();
+    let mut places = vec![('A', [-20.0, 0.0])];
+    for (i, (&c, &d)) in (0..).zip(along.iter().zip(&crossing)) {
+        let east_m = 20.0 * f64::from(i);
+        places.extend([(c, [east_m, 0.0]), (d, [east_m, 30.0])]);
+    }
+    let mut map = AsciiMap::placed(&places)
+        .way(&format!("A{}", along[0]), ROAD)
+        .way(&along.iter().collect::<String>(), ONE_WAY);
+    for (c, d) in along.iter().zip(&crossing) {
+        map = map.way(&format!("{c}{d}"), ROAD);
+    }
+    // The way `to` is not there.
+    let no_turn = map.clone().restriction(&[1], Via::Ways(vec![2; 20]), &[99], "restriction=no_left_turn");
+    let (network, _) = built(&no_turn);
+    // Nothing is known of the destination: the movement onto the way is closed rather than left open.
+    let onto = |network: &Network| {
+        let first = network.edges.iter().position(|e| e.from_node == id_of('A')).unwrap() as u32;
+        network.movements().all().iter().find(|m| m.from == first && m.forbidden.is_some()).is_some()
+    };
+    assert!(onto(&network));
+    assert!(!onto(&built(&map).0));
+}
