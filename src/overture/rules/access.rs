@@ -286,7 +286,8 @@ impl Outcome {
             Permission::Restricted => "destination",
             Permission::No => "no",
         };
-        let general = self.total(heading).min(buses.total(heading));
+        let [general, lorry] = self.permissions(heading);
+        let general = if lorry < self.total(heading) { self.total(heading) } else { general };
         let mut tags = vec![("motor_vehicle".to_owned(), word(general).to_owned())];
         for (key, outcome) in both {
             if outcome.total(heading) != general {

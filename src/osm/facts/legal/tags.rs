@@ -29,8 +29,8 @@ fn is_simple(head: &str, suffix: &str, value: &str) -> bool {
             suffix.split(':').all(|part| matches!(part, "" | "forward" | "backward" | "physical" | "legal" | "lanes"))
         }
         "oneway" => {
-            suffix.is_empty()
-                && !matches!(oneway_closes(value, Direction::Forward), Closes::Sometimes | Closes::Unclear)
+            let plain = |side| !matches!(oneway_closes(value, side), Closes::Sometimes | Closes::Unclear);
+            suffix.is_empty() && plain(Direction::Forward) && plain(Direction::Backward)
         }
         _ => false,
     }

@@ -282,7 +282,7 @@ fn conditions_are_decided_where_they_can_be() {
             ("hgv:conditional=no@(weight>3.5)", "forbidden/weight"),
             ("hgv:conditional=no @ (weight > 3.5 t)", "forbidden/weight"),
             ("hgv:conditional=no @ (weight>3500 kg)", "forbidden/weight"),
-            ("hgv:conditional=no @ (weight>80000 lbs)", "open"),
+            ("hgv:conditional=no @ (weight>90000 lbs)", "open"),
             ("hgv:conditional=no @ (weight>3,5)", "forbidden/weight"),
             ("hgv:conditional=no @ (weight≥12)", "forbidden/weight"),
             ("hgv:conditional=no @ (width>2.3)", "forbidden/width"),
@@ -726,4 +726,79 @@ fn reasons_are_words() {
     ] {
         assert!(!verdict_words(verdict).1.is_empty());
     }
+}
+
+#[derive(serde::Deserialize)]
+struct Page {
+    section: Vec<Section>,
+}
+
+#[derive(serde::Deserialize)]
+struct Section {
+    title: String,
+    text: String,
+    #[serde(default)]
+    node: bool,
+    #[serde(default)]
+    row: Vec<Row>,
+}
+
+#[derive(serde::Deserialize)]
+struct Row {
+    tags: String,
+    vehicle: String,
+    verdict: String,
+    what: Option<String>,
+}
+
+fn rendered(page: &Page) -> String {
+    let mut text = "# Rules of the road\n\nWhich tags netcert reads, which not, and what each does to a verdict. A verdict of the geometry stands only where the rules leave the road open. This page is \
+                    made from `data/rules.toml`; a test holds each row against the program.\n"
+        .to_owned();
+    for section in page.section.iter().filter(|section| !(section.text.is_empty() && section.row.is_empty())) {
+        text += &format!("\n## {}\n", section.title);
+        if !section.text.is_empty() {
+            text += &format!("\n{}\n", section.text.trim());
+        }
+        if !section.row.is_empty() {
+            text += "\n| tags | vehicle | verdict | |\n| --- | --- | --- | --- |\n";
+        }
+        for Row { tags, vehicle, verdict, what } in &section.row {
+            let tags: Vec<String> = tags.split(" | ").map(|tag| format!("`{tag}`")).collect();
+            let words = |one: &str| one.replace('/', ": ");
+            let verdict = match verdict.split_once(' ') {
+                Some((along, against)) => format!("along {}, against {}", words(along), words(against)),
+                None => words(verdict),
+            };
+            let what = what.as_deref().unwrap_or("");
+            text += &format!("| {} | {vehicle} | {verdict} | {what} |\n", tags.join(" "));
+        }
+    }
+    text
+}
+
+/// `NETCERT_WRITE_DOCS=1` writes the page.
+#[test]
+fn the_page_of_rules_is_true() {
+    let page: Page = toml::from_str(include_str!("../../../../data/rules.toml")).unwrap();
+    for section in &page.section {
+        for Row { tags: text, vehicle: id, verdict, .. } in &section.row {
+            let got = if section.node {
+                let facts = point_facts(&tags(&format!("highway=x | {text}"))[1..]);
+                facts.map_or("open".to_owned(), |facts| words(facts.legal.forbids(&vehicle(id))))
+            } else {
+                said(text, id)
+            };
+            assert_eq!(&got, verdict, "{id}: {text}");
+        }
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/rules.md");
+    let page = rendered(&page);
+    if std::env::var_os("NETCERT_WRITE_DOCS").is_some() {
+        std::fs::write(path, &page).unwrap();
+    }
+    assert!(
+        std::fs::read_to_string(path).unwrap_or_default() == page,
+        "docs/rules.md differs; NETCERT_WRITE_DOCS=1 writes it"
+    );
 }
