@@ -471,9 +471,8 @@ fn a_way_that_is_named_often_takes_few_steps_and_leaves_nothing_open() {
         let east_m = 20.0 * f64::from(i);
         places.extend([(c, [east_m, 0.0]), (d, [east_m, 30.0])]);
     }
-    let mut map = AsciiMap::placed(&places)
-        .way(&format!("A{}", along[0]), ROAD)
-        .way(&along.iter().collect::<String>(), ONE_WAY);
+    let mut map =
+        AsciiMap::placed(&places).way(&format!("A{}", along[0]), ROAD).way(&along.iter().collect::<String>(), ONE_WAY);
     for (c, d) in along.iter().zip(&crossing) {
         map = map.way(&format!("{c}{d}"), ROAD);
     }
