@@ -97,6 +97,8 @@ pub mod evidence;
 pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;
+#[cfg(any(feature = "export", feature = "overture"))]
+mod folders;
 pub mod manoeuvres;
 pub mod network;
 pub mod osm;

@@ -7,7 +7,7 @@
 //! | `work` | the certificates, or no value if the task failed |
 //! | `error` | why the task failed |
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use parquet::file::reader::SerializedFileReader;
@@ -15,6 +15,7 @@ use parquet::record::reader::RowIter;
 use parquet::record::{Field, Row};
 
 use super::FolderError;
+use crate::folders::files_below;
 use crate::pipeline::TaskResult;
 use crate::store::Stage;
 
@@ -38,9 +39,8 @@ impl Results {
     pub fn open(folder: &Path) -> Result<Self, FolderError> {
         let mut files = Vec::new();
         if folder.exists() {
-            collect(folder, &mut files)?;
+            files = parquet_files(folder)?;
         }
-        files.sort();
         let mut results = Self { files: files.into_iter(), open: None, job: None, first: None, failed: Vec::new() };
         results.first = results.read()?;
         if results.first.is_none() {
@@ -121,20 +121,10 @@ fn result(row: &Row) -> Result<(TaskResult, String, String), String> {
     Ok((TaskResult { part, work }, job.ok_or_else(|| missing("job"))?, error))
 }
 
-/// Parquet files below a folder. Names that begin with `.` or `_` are an engine's own.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), FolderError> {
-    let io = |source| FolderError::Io { path: folder.to_owned(), source };
-    for entry in fs::read_dir(folder).map_err(io)? {
-        let path = entry.map_err(io)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if name.starts_with(['.', '_']) {
-            continue;
-        }
-        if path.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|end| end == "parquet") {
-            files.push(path);
-        }
-    }
-    Ok(())
+/// Parquet files below a folder, sorted. Names that begin with `.` or `_` are an engine's own.
+fn parquet_files(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
+    let mut files = files_below(folder, &|name| !name.starts_with(['.', '_']))
+        .map_err(|(path, source)| FolderError::Io { path, source })?;
+    files.retain(|path| path.extension().is_some_and(|end| end == "parquet"));
+    Ok(files)
 }

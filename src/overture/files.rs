@@ -1,10 +1,11 @@
 //! Which files a source has. Content decides, not names: GeoParquet begins with `PAR1`, GeoJSON with its collection.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::error::{OvertureError, Problem};
+use crate::folders::files_below;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
@@ -70,20 +71,14 @@ pub(super) fn find(inputs: &[&Path]) -> Result<(Vec<(PathBuf, Format)>, String),
 
 /// Collects the files below a folder. Partitions of other types and files of other formats are passed over.
 fn walk(folder: &Path, files: &mut Vec<(PathBuf, Format)>) -> Result<(), OvertureError> {
-    let failed = |e: std::io::Error| OvertureError::of_file(folder, e);
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let passes = |name: &str| {
         let other = |key: &str, known: &[&str]| name.strip_prefix(key).is_some_and(|value| !known.contains(&value));
-        if name.starts_with(['.', '_'])
-            || other("theme=", &["transportation"])
-            || other("type=", &["segment", "connector"])
-        {
-            continue;
-        }
-        if path.is_dir() {
-            walk(&path, files)?;
-        } else if let Some(format) = format(&path).map_err(|e| OvertureError::of_file(&path, e))? {
+        !name.starts_with(['.', '_'])
+            && !other("theme=", &["transportation"])
+            && !other("type=", &["segment", "connector"])
+    };
+    for path in files_below(folder, &passes).map_err(|(folder, e)| OvertureError::of_file(&folder, e))? {
+        if let Some(format) = format(&path).map_err(|e| OvertureError::of_file(&path, e))? {
             files.push((path, format));
         }
     }
