@@ -17,25 +17,35 @@ pub(crate) struct OutputLock {
     pub(crate) leftover: bool,
 }
 
+/// How often a lock is tried. Two processes that want the same output need a handful of tries.
+const TRIES: u32 = 100;
+
 /// Creates or empties the file at `path` and locks it.
 ///
 /// # Errors
-/// A running process holds the lock ([`io::ErrorKind::WouldBlock`]), or the file cannot be created.
+/// A running process holds the lock ([`io::ErrorKind::WouldBlock`]), the file cannot be created, or the file system tells another identity
+/// of it each time.
 pub(crate) fn file(path: &Path) -> io::Result<OutputLock> {
-    loop {
+    file_if(path, &same_file)
+}
+
+/// As [`file`]; `same` tells whether the opened file is the one at the path.
+fn file_if(path: &Path, same: &dyn Fn(&File, &Path) -> bool) -> io::Result<OutputLock> {
+    for _ in 0..TRIES {
         if path.is_dir() {
             // An earlier run left an unfinished folder of this name.
             remove_unlocked(path)?;
         }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         lock(&file)?;
-        if !same_file(&file, path) {
+        if !same(&file, path) {
             continue; // the process that held the lock has just renamed or removed the file
         }
         let leftover = file.metadata()?.len() > 0;
         file.set_len(0)?;
         return Ok(OutputLock { file: Some(file), leftover });
     }
+    Err(changing(path))
 }
 
 /// Creates or empties the folder at `path` and locks it.
@@ -44,12 +54,18 @@ pub(crate) fn file(path: &Path) -> io::Result<OutputLock> {
 /// As [`file`].
 #[cfg(feature = "export")]
 pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
+    folder_if(path, &same_file)
+}
+
+/// As [`folder`]; `same` tells whether the opened folder is the one at the path.
+#[cfg(feature = "export")]
+fn folder_if(path: &Path, same: &dyn Fn(&File, &Path) -> bool) -> io::Result<OutputLock> {
     if !cfg!(unix) {
         // Other systems have no locks for folders.
         remove_unlocked(path)?;
         return fs::create_dir_all(path).map(|()| OutputLock { file: None, leftover: false });
     }
-    loop {
+    for _ in 0..TRIES {
         if path.is_file() {
             remove_unlocked(path)?;
         }
@@ -59,7 +75,7 @@ pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
             opened => opened?,
         };
         lock(&file)?;
-        if !same_file(&file, path) {
+        if !same(&file, path) {
             continue;
         }
         let mut leftover = false;
@@ -70,6 +86,16 @@ pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
         }
         return Ok(OutputLock { file: Some(file), leftover });
     }
+    Err(changing(path))
+}
+
+/// The error after [`TRIES`]: on some file systems of other machines a file is never the same again.
+fn changing(path: &Path) -> io::Error {
+    io::Error::other(format!(
+        "{} is another file each time it is looked at: other processes replace it all the time, or its file system does not know files \
+         again; write to a local disk",
+        path.display()
+    ))
 }
 
 /// Removes a file or folder that no running process holds.
@@ -148,6 +174,26 @@ mod tests {
         assert!(path.is_file());
         drop(folder(&path).unwrap());
         assert!(path.is_dir());
+    }
+
+    /// Some file systems tell another inode each time.
+    #[test]
+    fn what_is_never_the_same_file_ends_with_an_error() {
+        let place = tempfile::tempdir().unwrap();
+        let looked = std::cell::Cell::new(0);
+        let never = |_: &File, _: &Path| {
+            looked.set(looked.get() + 1);
+            false
+        };
+        let failed = [file_if(&place.path().join("a.part"), &never), folder_if(&place.path().join("b.part"), &never)];
+        for failed in failed {
+            assert!(failed.unwrap_err().to_string().contains("write to a local disk"));
+        }
+        assert_eq!(looked.get(), 2 * TRIES);
+        // One that is the same at last is locked.
+        looked.set(0);
+        let last = |_: &File, _: &Path| looked.replace(looked.get() + 1) + 1 == TRIES;
+        assert!(file_if(&place.path().join("a.part"), &last).is_ok());
     }
 
     #[test]
