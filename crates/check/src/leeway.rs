@@ -508,7 +508,7 @@ impl<'a> Swept<'a> {
         let exact = self.exact.entry((unit, step)).or_insert_with(|| vec![f64::NAN; count]);
         for knot in knots {
             let end = at(step + 1, knot);
-            exact[knot] = if first { end } else { end.max(at(step, knot)) } * bow;
+            exact[knot] = throughout([if first { end } else { at(step, knot) }, end], bow);
         }
     }
 
@@ -537,7 +537,7 @@ impl<'a> Swept<'a> {
         };
         let end = at(step + 1)?;
         let start = if step == self.tubes.first { end } else { at(step)? };
-        Some([0, 1].map(|k| start[k].max(end[k]) * bow))
+        Some([0, 1].map(|k| throughout([start[k], end[k]], bow)))
     }
 
     /// Tightens the steps that a step's bounds rest on.
@@ -595,6 +595,13 @@ fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, Place, f64)>
         s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
     }
     None
+}
+
+/// A bound throughout a step, from those at both of its ends: the greater, times the factor of [`adjoint::bow`]. A bound that is no number is
+/// none: `f64::max` would take the other end's, and a cell would be sharpened again and again.
+fn throughout([start, end]: [f64; 2], bow: f64) -> f64 {
+    let bound = start.max(end) * bow;
+    if start.is_nan() || end.is_nan() || bound.is_nan() { f64::INFINITY } else { bound }
 }
 
 /// A body point, `a` ahead of the axle and `b` to its left.
@@ -672,5 +679,21 @@ impl Swept<'_> {
             delta.tan() / self.chain.links[unit].l * tube.e * delta.sin()
         };
         limit - (folded + before.a + tube.a + shift(ahead, before) + shift(unit, tube))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::throughout;
+
+    #[test]
+    fn a_bound_that_is_no_number_is_none() {
+        assert_eq!(throughout([1.0, 2.0], 1.5), 3.0);
+        assert_eq!(throughout([2.0, 1.0], 1.5), 3.0);
+        for ends in [[f64::NAN; 2], [f64::NAN, 1.0], [1.0, f64::NAN], [f64::INFINITY, 1.0]] {
+            assert_eq!(throughout(ends, 1.5), f64::INFINITY);
+        }
+        assert_eq!(throughout([0.0, 0.0], f64::INFINITY), f64::INFINITY);
+        assert_eq!(throughout([0.0, 0.0], f64::NAN), f64::INFINITY);
     }
 }
