@@ -10,13 +10,17 @@ use super::polyline::Polyline;
 use super::profile::Across;
 use super::smooth::{Smoothed, Smoothing, smooth};
 use super::taper::guideline_ratio;
-use crate::network::{Edge, Network, Stroke, offset_m};
+use crate::network::{Edge, Network, Stroke, length_m, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
 
 /// The cross section of each edge.
 pub type Sections<'a> = dyn Fn(&Edge) -> CrossSection + Sync + 'a;
+
+/// Longest line of a stroke and its approach, metres. Strokes end at 40 km; only a single edge may be longer. One of hundreds of kilometres
+/// has a misplaced node, and its corridor would not fit into memory.
+const MOST_LENGTH_M: f64 = 500_000.0;
 
 /// A stroke and its approach in a metric frame.
 pub struct LaidOut<'n> {
@@ -42,7 +46,7 @@ struct Laid<'n> {
 
 impl<'n> LaidOut<'n> {
     /// # Errors
-    /// `Geometry`: the stroke has no edges, or is wider than a metric frame.
+    /// `Geometry`: the stroke has no edges, is wider than a metric frame, or has an edge of hundreds of kilometres.
     pub fn new(network: &'n Network, stroke: &Stroke, params: &'n Params) -> Result<Self, UnknownReason> {
         let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
         let (Some(approach), Some(own)) = (range(&stroke.approach), range(&stroke.edges)) else {
@@ -61,6 +65,9 @@ impl<'n> LaidOut<'n> {
             let skipped = if place == 0 { skipped } else { 0 };
             positions.extend(network.positions(&network.edges[index as usize]).skip(skipped));
             ends.push(positions.len());
+        }
+        if length_m(positions.iter().copied()) > MOST_LENGTH_M {
+            return Err(UnknownReason::Geometry);
         }
         let metric = Frame::around(&positions).and_then(|frame| Ok((frame, frame.forward(&positions)?)));
         let (frame, metric) = metric.map_err(|_| UnknownReason::Geometry)?;

@@ -6,9 +6,13 @@
 use super::Corridor;
 use super::profile::MIDDLE;
 use super::spline::{Cubics, Interpolant, Jet};
+use crate::watch;
 
 /// Below this factor 1 − κ·o the offset curve is about to fold, and the edge is unknown.
 pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
+
+/// Most stations of a corridor from a given line: a metre apart, round the earth and more.
+pub(crate) const MOST_STATIONS: f64 = 5e7;
 
 /// A plane curve over a parameter.
 pub(crate) trait Curve {
@@ -103,12 +107,15 @@ impl<C: Curve> Track<'_, C> {
         (along * along + b * b).sqrt()
     }
 
-    /// Stations about `spacing_m` apart for parameters `from..=to`, and the arc length at steps of the parameter.
+    /// Stations about `spacing_m` apart for parameters `from..=to`, and the arc length at steps of the parameter. A curve with too many
+    /// of them, or without a length, has stations that are not finite.
     pub(crate) fn resample(&self, from: f64, to: f64, spacing_m: f64) -> (Corridor, ArcLength) {
         let arc = ArcLength::measure(from, to, self.curve.step_m(), |u| self.speed(u));
-        let steps = ((arc.total() / spacing_m).round() as usize).max(1);
+        let stations = arc.total() / spacing_m;
+        let usable = stations <= 2.0 * MOST_STATIONS;
+        let steps = if usable { (stations.round() as usize).max(1) } else { 1 };
         let n = steps + 1;
-        let spacing_m = arc.total() / steps as f64;
+        let spacing_m = if usable { arc.total() / steps as f64 } else { f64::NAN };
         let mut c = Corridor {
             spacing_m,
             x: Vec::with_capacity(n),
@@ -122,6 +129,7 @@ impl<C: Curve> Track<'_, C> {
         let (mut hint, mut heading) = (0, 0.0_f64);
         let mut before = [1.0, 0.0];
         for i in 0..n {
+            watch::poll();
             let p = self.at(arc.parameter(i as f64 * spacing_m, &mut hint));
             let v = p.velocity;
             // The turn since the last station, so that the heading never jumps by 2π.
@@ -157,6 +165,7 @@ impl ArcLength {
         nodes.push((0.0, before));
         let mut sum = 0.0;
         for i in 1..=steps {
+            watch::poll();
             let u = from + i as f64 * step;
             let (middle, end) = (speed(u - 0.5 * step), speed(u));
             sum += step / 6.0 * (before + 4.0 * middle + end);
@@ -195,4 +204,35 @@ impl ArcLength {
 fn hermite(t: f64, from: f64, to: f64, slope_from: f64, slope_to: f64) -> f64 {
     let chord = to - from;
     from + t * (chord + (1.0 - t) * ((1.0 - t) * (slope_from - chord) - t * (slope_to - chord)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::profile::Profile;
+    use super::*;
+
+    /// A straight curve over 0..=1 of any length.
+    struct Straight(f64);
+
+    impl Curve for Straight {
+        fn at(&self, u: f64) -> Jet<2> {
+            [[u * self.0, 0.0], [self.0, 0.0], [0.0; 2], [0.0; 2]]
+        }
+
+        fn step_m(&self) -> f64 {
+            0.5
+        }
+    }
+
+    #[test]
+    fn a_curve_without_a_usable_length_has_two_stations_that_are_not_finite() {
+        let profile = Profile { knot_m: 1.0, coefficients: vec![[1.0, -1.0, 0.0]; 4] }.cubics();
+        let stations = |length_m| Track { curve: &Straight(length_m), profile: &profile }.resample(0.0, 1.0, 1.0).0;
+        let usual = stations(200.0);
+        assert!(usual.len() == 201 && usual.x.iter().all(|x| x.is_finite()));
+        for length_m in [1e9, 1e18, f64::INFINITY, f64::NAN] {
+            let corridor = stations(length_m);
+            assert!(corridor.len() == 2 && corridor.x.iter().all(|x| !x.is_finite()), "{length_m}");
+        }
+    }
 }

@@ -443,3 +443,18 @@ fn assert_consistent_away_from_kinks(c: &Corridor) {
         assert!(off < 0.001 + 0.2 * (high - low), "station {i}: {off} rad off, curvature {low}..{high}");
     }
 }
+
+/// A node at a mistaken latitude: 13,000 km without the limit, and millions of knots.
+#[test]
+fn an_edge_over_half_the_earth_has_no_corridor() {
+    let whole = section(strip(LANE), strip(LANE));
+    let of_length = |south: i32, north: i32| {
+        let (mut n, stroke) = network(&[(vec![[0.0, 0.0], [0.0, 100.0]], whole)], false);
+        n.shapes = [south, north].map(|lat| LonLat { lon_e7: 100_000_000, lat_e7: lat * 10_000_000 }).to_vec();
+        stroke_corridor(&n, &stroke, Policy::Lane, &Params { spacing_m: 50.0, ..Params::default() })
+    };
+    assert_eq!(of_length(-60, 60).err(), Some(UnknownReason::Geometry));
+    assert_eq!(of_length(40, 46).err(), Some(UnknownReason::Geometry));
+    let long = of_length(40, 41).unwrap();
+    assert!((long.corridor.spacing_m * (long.corridor.len() - 1) as f64 - 111_000.0).abs() < 1_000.0);
+}
