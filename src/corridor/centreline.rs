@@ -5,7 +5,7 @@
 
 use super::polyline::Polyline;
 use super::profile::Profile;
-use super::resample::{ArcLength, Curve, Track};
+use super::resample::{ArcLength, Curve, MOST_STATIONS, Track};
 use super::smooth::{Smoothing, smooth};
 use super::spline::Interpolant;
 use super::{Corridor, Params};
@@ -50,7 +50,7 @@ const MOST_TURN_RAD: f64 = 0.6;
 /// single one). With `tolerance_m` 0 the points are the centreline, otherwise it may be that far from them. Stations
 /// are about `spacing_m` apart.
 ///
-/// Errors name the point that is not finite, coincides with the previous one, or makes a kink.
+/// Errors name the point that is not finite, coincides with the previous one, or makes a kink. A line has at most 50 million stations.
 pub fn from_centreline(
     points: &[[f64; 2]],
     left: &[f64],
@@ -61,6 +61,7 @@ pub fn from_centreline(
     check_number("smoothing_tolerance_m", tolerance_m, 0.0..=100.0)?;
     check_number("spacing_m", spacing_m, 0.05..=100.0)?;
     let line = checked_line(points)?;
+    check_stations(line.length(), spacing_m)?;
     let left = checked_widths("left_m", left, points.len())?;
     let right = checked_widths("right_m", right, points.len())?;
     if tolerance_m > 0.0 {
@@ -102,6 +103,20 @@ fn checked_line(points: &[[f64; 2]]) -> Result<Polyline, CentrelineError> {
         return Err(CentrelineError::value("points", message));
     }
     Ok(line)
+}
+
+/// A longer line has a mistaken point. Its corridor would not fit into memory.
+fn check_stations(length_m: f64, spacing_m: f64) -> Result<(), CentrelineError> {
+    let most_m = MOST_STATIONS * spacing_m.min(1.0);
+    if length_m <= most_m {
+        return Ok(());
+    }
+    let message = format!(
+        "{:.0} km long, and at most {:.0} km have stations {spacing_m} m apart; correct the points, cut the line, or give a larger spacing_m",
+        length_m / 1e3,
+        most_m / 1e3
+    );
+    Err(CentrelineError::value("points", message))
 }
 
 fn checked_widths(field: &str, widths: &[f64], points: usize) -> Result<Vec<f64>, CentrelineError> {
@@ -236,6 +251,19 @@ mod tests {
             let at: Vec<f64> = points.iter().map(|p| p[0]).collect();
             assert!(ours <= linear(&at, &widths, s) + 1e-6, "{s}: {ours}");
         }
+    }
+
+    /// Without the limit the second line has 4e9 stations.
+    #[test]
+    fn a_line_of_too_many_stations_is_refused() {
+        let ends = [[-9e7, 0.0], [9e7, 0.0]];
+        for (tolerance_m, spacing_m) in [(0.0, 1.0), (0.0, 0.05), (1.0, 100.0)] {
+            let refused = from_centreline(&ends, &[3.0], &[3.0], tolerance_m, spacing_m).unwrap_err().to_string();
+            assert!(refused.starts_with("points: 180000 km long, and at most "), "{refused}");
+        }
+        assert_eq!(check_stations(5e7, 1.0), Ok(()));
+        assert_eq!(check_stations(2e7, 0.5), Ok(()));
+        assert!(check_stations(2e7, 0.25).is_err() && check_stations(f64::NAN, 1.0).is_err());
     }
 
     #[test]
