@@ -59,11 +59,11 @@ pub struct NetworkAccount {
     pub areas_kept: u64,
     /// Islands among them.
     pub islands_kept: u64,
-    /// Islands that lack nodes or cross themselves, taken as the convex hull of the nodes there are.
+    /// Islands that lack nodes, cross themselves or have very many corners, taken as the convex hull of the nodes there are.
     pub islands_widened: u64,
     /// Areas left out: the file lacks some of their nodes.
     pub areas_cut: u64,
-    /// Areas left out: the ring crosses itself or encloses nothing.
+    /// Areas left out: the ring crosses itself, encloses nothing, or has more corners than any real one.
     pub areas_invalid: u64,
     /// Turn restrictions read: `= restrictions_kept + off_network + without_effect`.
     pub restrictions_read: u64,

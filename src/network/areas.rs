@@ -14,6 +14,10 @@ use crate::osm::{LonLat, NodeTable, RoadArea};
 
 /// Islands farther from every road than this are left out, metres. Roads and measured surfaces reach less far from their lines.
 const NEAR_ROAD_M: f64 = 100.0;
+/// Islands taller than this, 1e-7 degree (1.1 km), have a list of their own: each search would have to begin as far in the south.
+const TALL_E7: i32 = 100_000;
+/// Rings of more corners are not tested for crossings of their own, which takes a time that grows with the square. OpenStreetMap allows 2,000.
+const MOST_CORNERS: usize = 10_000;
 
 /// The surface of roads at a junction, or an island.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -33,10 +37,12 @@ pub struct Areas {
     all: Vec<Area>,
     /// By node of the network: indices into `all` of the surfaces around it.
     around: FxHashMap<i64, Vec<u32>>,
-    /// Islands from south to north: their extents, and indices into `all`.
+    /// Islands from south to north without tall ones: their extents, and indices into `all`.
     islands: Vec<(Extent, u32)>,
-    /// The greatest extent of an island from south to north, 1e-7 degree.
+    /// The greatest extent of one of `islands` from south to north, 1e-7 degree.
     tallest: i32,
+    /// The islands taller than [`TALL_E7`]: no real ones.
+    tall: Vec<(Extent, u32)>,
 }
 
 impl Areas {
@@ -59,14 +65,15 @@ impl Areas {
             let first = nodes.partition_point(|node| node.0 < extent.south);
             let end = nodes.partition_point(|node| node.0 <= extent.north);
             for &(lat_e7, lon_e7, id) in &nodes[first..end] {
-                if contains(&area.ring, LonLat { lon_e7, lat_e7 }) {
+                if (extent.west..=extent.east).contains(&lon_e7) && contains(&area.ring, LonLat { lon_e7, lat_e7 }) {
                     around.entry(id).or_default().push(index);
                 }
             }
         }
         islands.sort_unstable_by_key(|&(extent, index)| (extent.south, index));
-        let tallest = islands.iter().map(|(extent, _)| extent.north.saturating_sub(extent.south)).max().unwrap_or(0);
-        Self { all, around, islands, tallest }
+        let (tall, islands): (Vec<_>, Vec<_>) = islands.into_iter().partition(|(extent, _)| height(extent) > TALL_E7);
+        let tallest = islands.iter().map(|(extent, _)| height(extent)).max().unwrap_or(0);
+        Self { all, around, islands, tallest, tall }
     }
 
     /// All areas, sorted by way id.
@@ -83,7 +90,7 @@ impl Areas {
     /// Whether there are no islands at all.
     #[must_use]
     pub fn without_islands(&self) -> bool {
-        self.islands.is_empty()
+        self.islands.is_empty() && self.tall.is_empty()
     }
 
     /// The islands that may lie within the box around the given places, from south to north.
@@ -99,8 +106,17 @@ impl Areas {
                 ..self.islands.partition_point(|island| island.0.south <= around.north)
         });
         let meets = move |island: &&(Extent, u32)| around.is_some_and(|around| around.meets(island.0));
-        self.islands[range].iter().filter(meets).map(|island| island.1)
+        let mut found: Vec<(Extent, u32)> = self.islands[range].iter().filter(meets).copied().collect();
+        if !self.tall.is_empty() {
+            found.extend(self.tall.iter().filter(meets));
+            found.sort_unstable_by_key(|&(extent, index)| (extent.south, index));
+        }
+        found.into_iter().map(|island| island.1)
     }
+}
+
+fn height(extent: &Extent) -> i32 {
+    extent.north.saturating_sub(extent.south)
 }
 
 /// The areas of an extract with a usable ring, sorted by way id.
@@ -152,13 +168,14 @@ fn near_roads(areas: &Areas, network: &Network) -> FxHashSet<u32> {
     near
 }
 
-/// The convex hull of places as a closed ring. `None` if they enclose nothing.
+/// The convex hull of places as a closed ring. `None` if they enclose nothing. A hull of very many corners is simple by its nature.
 fn hull(places: &[LonLat]) -> Option<Vec<LonLat>> {
     let points: MultiPoint<f64> =
         places.iter().map(|at| Point::new(f64::from(at.lon_e7), f64::from(at.lat_e7))).collect();
     let corner = |at: &geo::Coord| LonLat { lon_e7: at.x as i32, lat_e7: at.y as i32 };
     let ring: Vec<LonLat> = points.convex_hull().exterior().coords().map(corner).collect();
-    is_simple(&ring).then_some(ring)
+    let whole = if ring.len() > MOST_CORNERS { encloses(&ring) } else { is_simple(&ring) };
+    whole.then_some(ring)
 }
 
 /// Node and position of both ends of every edge.
@@ -170,13 +187,21 @@ fn ends(network: &Network) -> impl Iterator<Item = (i64, LonLat)> + '_ {
     })
 }
 
-/// Whether a ring encloses an area and does not touch itself.
+/// Whether a ring encloses an area and does not touch itself. One of more than [`MOST_CORNERS`] counts as none.
 fn is_simple(ring: &[LonLat]) -> bool {
+    if ring.len() > MOST_CORNERS || !encloses(ring) {
+        return false;
+    }
     let corners: LineString = ring.iter().map(|at| at.degrees()).collect();
+    Polygon::new(corners, Vec::new()).is_valid()
+}
+
+/// Whether the signed area of a ring is not 0.
+fn encloses(ring: &[LonLat]) -> bool {
     let twice = |w: &[LonLat]| {
         i128::from(w[0].lon_e7) * i128::from(w[1].lat_e7) - i128::from(w[1].lon_e7) * i128::from(w[0].lat_e7)
     };
-    ring.windows(2).map(twice).sum::<i128>() != 0 && Polygon::new(corners, Vec::new()).is_valid()
+    ring.windows(2).map(twice).sum::<i128>() != 0
 }
 
 /// Whether a place is inside a closed ring, in integer arithmetic. A place on the ring is outside.
@@ -200,6 +225,7 @@ fn contains(ring: &[LonLat], at: LonLat) -> bool {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -236,5 +262,65 @@ mod tests {
         assert!(is_simple(&[at(0, 0), at(400, 0), at(400, 400), at(0, 400), at(0, 0)]));
         assert!(!is_simple(&[at(0, 0), at(400, 400), at(400, 0), at(0, 400), at(0, 0)]));
         assert!(!is_simple(&[at(0, 0), at(400, 0), at(0, 0), at(0, 0)]));
+    }
+
+    fn rectangle(way_id: i64, [west, south]: [i32; 2], [wide, tall]: [i32; 2]) -> Area {
+        let (east, north) = (west + wide, south + tall);
+        let ring = vec![at(west, south), at(east, south), at(east, north), at(west, north), at(west, south)];
+        Area { way_id, kind: AreaKind::Island, ring }
+    }
+
+    /// A mistaken tag on an area of a degree must not make each search read all islands of a degree.
+    #[test]
+    fn a_tall_island_is_found_in_order_and_does_not_widen_the_search() {
+        let mut all: Vec<Area> = (0..2_000).map(|k| rectangle(k.into(), [0, 10_000 * k], [50, 100])).collect();
+        all.push(rectangle(5_000, [-10, -70], [20, 10_000_000]));
+        all.push(rectangle(5_001, [900, 0], [20, 20_000_000]));
+        let areas = Areas::new(all.clone(), &Network::default());
+        assert_eq!((areas.tallest, areas.tall.len(), areas.islands.len()), (100, 2, 2_000));
+        let found = |south: i32, north: i32| -> Vec<i64> {
+            areas.islands(&[at(0, south), at(20, north)]).map(|area| area.way_id).collect()
+        };
+        assert_eq!(found(50, 10_050), [5_000, 0, 1]);
+        assert_eq!(found(-80, -75), Vec::<i64>::new());
+        assert_eq!(found(12_000_000, 12_000_001), [1_200]);
+        // As if each island were looked at.
+        for (south, north) in [(-100, 100), (0, 0), (9_999_900, 10_000_100), (5, 20_000_000)] {
+            let asked = Extent::of([at(0, south), at(20, north)].into_iter()).unwrap();
+            let mut each: Vec<(i32, i64)> = all
+                .iter()
+                .filter_map(|area| Some((Extent::of(area.ring.iter().copied())?, area.way_id)))
+                .filter(|(extent, _)| asked.meets(*extent))
+                .map(|(extent, id)| (extent.south, id))
+                .collect();
+            each.sort_unstable();
+            assert_eq!(found(south, north), each.into_iter().map(|(_, id)| id).collect::<Vec<_>>(), "{south} {north}");
+        }
+        let only = Areas::new(vec![rectangle(1, [0, 0], [9, 1_000_000])], &Network::default());
+        assert!(!only.without_islands() && only.islands(&[at(5, 5)]).count() == 1);
+    }
+
+    /// A circle of a million corners takes 10^12 pairs of sides.
+    #[test]
+    fn a_ring_of_very_many_corners_is_no_surface_and_as_an_island_its_hull() {
+        let circle = |corners: u32| {
+            let on = |k: u32| (f64::from(k % corners) / f64::from(corners) * std::f64::consts::TAU).sin_cos();
+            let corner = |k: u32| at((1e8 * on(k).1) as i32, (1e8 * on(k).0) as i32);
+            (0..=corners).map(corner).collect::<Vec<LonLat>>()
+        };
+        let ring = circle(1_000_000);
+        assert!(!is_simple(&ring) && is_simple(&circle(300)));
+        let whole = hull(&ring).unwrap();
+        assert!(whole.len() > MOST_CORNERS && whole.first() == whole.last());
+        assert!(contains(&whole, at(0, 99_000_000)) && !contains(&whole, at(72_000_000, 72_000_000)));
+        let nodes =
+            NodeTable { ids: (0..1_000_000).collect(), places: ring[..1_000_000].iter().copied().map(Some).collect() };
+        let refs: Vec<i64> = (0..1_000_000).chain([0]).collect();
+        let area = |id, kind| RoadArea { id, kind, refs: refs.clone() };
+        let road = AreaKind::Road(crate::osm::facts::RoadClass::Primary);
+        let mut account = NetworkAccount::default();
+        let kept = usable(vec![area(1, road), area(2, AreaKind::Island)], &nodes, &mut account);
+        assert_eq!(kept.iter().map(|area| area.way_id).collect::<Vec<_>>(), [2]);
+        assert_eq!((account.areas_invalid, account.islands_widened), (1, 1));
     }
 }
