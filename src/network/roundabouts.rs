@@ -2,7 +2,7 @@
 //!
 //! A long vehicle stands on two arcs at once, so entering, circulating and leaving are one movement. The order is
 //! fixed, and a ring has at most entries times exits passages. Whole circles are left out, and so are rings whose arcs
-//! are all longer than any vehicle.
+//! are all longer than any vehicle, and rings of many kilometres.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -13,6 +13,9 @@ use super::{Network, Stroke};
 const LONGEST_M: f64 = 100.0;
 /// With more entries or exits than this a ring is a ring road, not a roundabout.
 const MOST_ARMS: usize = 24;
+/// A longer ring is a ring road, too, metres round. The longest roundabout, in Putrajaya, has 3,400. The planner's raster covers a passage's
+/// whole ring.
+const MOST_ROUND_M: f64 = 10_000.0;
 
 /// A roundabout: its arcs in driving order, and the edges that enter and leave at the nodes where they start.
 struct Ring {
@@ -60,7 +63,8 @@ impl Network {
         }
         // A ring that visits a node twice is no roundabout.
         let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
-        let short = edges().any(|edge| self.length_m(edge) <= LONGEST_M);
+        let lengths_m: Vec<f64> = edges().map(|edge| self.length_m(edge)).collect();
+        let short = lengths_m.iter().any(|m| *m <= LONGEST_M) && lengths_m.iter().sum::<f64>() <= MOST_ROUND_M;
         let none = || vec![Vec::new(); nodes.len()];
         let ring = Ring { arcs: arcs.to_vec(), closed: stroke.closed, entries: none(), exits: none() };
         (apart && short).then_some((ring, nodes))
@@ -92,8 +96,8 @@ impl Ring {
         let last = if self.closed { place + n - 1 } else { n };
         (place + 1..=last).filter_map(move |end| {
             let exits = self.exits.get(if self.closed { end % n } else { end })?;
-            let arcs = (place..end).map(|k| self.arcs[k % n]).collect();
-            (!exits.is_empty()).then_some((arcs, exits.as_slice()))
+            let arcs = || (place..end).map(|k| self.arcs[k % n]).collect();
+            (!exits.is_empty()).then(|| (arcs(), exits.as_slice()))
         })
     }
 }

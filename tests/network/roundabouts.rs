@@ -3,7 +3,7 @@
 //! Widths are tagged, and kerb radii are the test's own.
 
 use crate::oracle;
-use crate::support::ascii_map::id_of;
+use crate::support::ascii_map::{self, AsciiMap, id_of};
 use crate::support::catalogue::catalogued;
 use crate::support::junctions::Drawn;
 use crate::support::roundabout::{RING, map};
@@ -290,4 +290,30 @@ fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
         // the kerb.)
         assert!((-0.2..0.4).contains(&gap_m), "{gap_m}");
     }
+}
+
+/// A ring of 24 points with one more 50 m after the first, and three arms.
+fn ring_of(radius_m: f64) -> AsciiMap {
+    let at = |turn: f64, m: f64| {
+        let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
+        [m * cos, m * sin]
+    };
+    let mut nodes: Vec<_> = RING.chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 24.0, radius_m))).collect();
+    let (a, b) = (nodes[0].1, nodes[1].1);
+    let share = 50.0 / (b[0] - a[0]).hypot(b[1] - a[1]);
+    let near = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+    nodes.extend([('Z', near), ('W', at(0.0, radius_m + 150.0)), ('S', [near[0] - 150.0, near[1]])]);
+    nodes.push(('E', at(0.5, radius_m + 150.0)));
+    let ring = format!("aZ{}a", &RING[1..]);
+    let road = "highway=secondary width=8";
+    let map = AsciiMap::placed(&nodes).way(&ring, &format!("junction=roundabout {road}"));
+    map.way("Wa", road).way("SZ", road).way("Em", road)
+}
+
+/// The planner's raster covers the whole ring of a passage: for one of 40 km round, a gigabyte.
+#[test]
+fn a_ring_of_more_than_ten_kilometres_is_no_roundabout() {
+    let passages = |radius_m| ascii_map::built(&ring_of(radius_m)).0.movements().passages().len();
+    assert_eq!(passages(540.0), 6, "as the longest there is");
+    assert_eq!([passages(1_590.0), passages(1_610.0)], [6, 0]);
 }
