@@ -4,7 +4,7 @@
 //! are resolved in edge order, so the same input gives the same ids, and they are counted.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Edge;
 use crate::osm::facts::Direction;
@@ -42,21 +42,44 @@ pub(super) fn resolve_collisions(edges: &mut [Edge]) -> u64 {
     changed.len() as u64
 }
 
+/// How often a new id is looked for by hashing. Later it is looked for by counting, which has an end whatever ids there are.
+const HASHES: usize = 64;
+
 /// The ids that must change so that all are distinct, with their edges' indices. The first edge with an id keeps it; each later one
-/// takes the next free id from repeated hashing.
+/// takes the next free id from repeated hashing, or else from counting.
 pub(super) fn changed_ids(ids: impl IndexedParallelIterator<Item = i64>) -> Vec<(u32, i64)> {
     let mut by_id: Vec<(i64, u32)> = ids.enumerate().map(|(i, id)| (id, i as u32)).collect();
     by_id.par_sort_unstable();
     let late: Vec<(i64, u32)> = by_id.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).collect();
-    let mut taken = FxHashSet::default();
-    let free = |(mut id, edge): (i64, u32)| {
-        while by_id.binary_search_by_key(&id, |&(id, _)| id).is_ok() || taken.contains(&id) {
-            id = positive(scramble(id as u64));
-        }
-        taken.insert(id);
+    let (mut given, mut onward) = (FxHashSet::default(), Onward::default());
+    let free = |(id, edge): (i64, u32)| {
+        let taken = |id: i64| given.contains(&id) || by_id.binary_search_by_key(&id, |&(id, _)| id).is_ok();
+        let hashes = || std::iter::successors(Some(id), |&id| Some(positive(scramble(id as u64)))).take(HASHES);
+        let id = hashes().find(|&id| !taken(id)).unwrap_or_else(|| onward.free(hashes().last().unwrap_or(id), taken));
+        given.insert(id);
         (edge, id)
     };
     late.into_iter().map(free).collect()
+}
+
+/// Free ids by counting. Taken ids that were passed once are not passed one by one again.
+#[derive(Default)]
+struct Onward {
+    /// By taken id: a later one, such that all between are taken.
+    to: FxHashMap<i64, i64>,
+}
+
+impl Onward {
+    /// The next free id. After the greatest comes 1.
+    fn free(&mut self, from: i64, taken: impl Fn(i64) -> bool) -> i64 {
+        let (mut at, mut passed) = (from, Vec::new());
+        while taken(at) {
+            passed.push(at);
+            at = self.to.get(&at).copied().unwrap_or_else(|| at.checked_add(1).unwrap_or(1));
+        }
+        self.to.extend(passed.into_iter().map(|id| (id, at)));
+        at
+    }
 }
 
 #[cfg(test)]
@@ -113,5 +136,41 @@ mod tests {
         assert_eq!(distinct.len(), 5);
         resolve_collisions(&mut again);
         assert!(edges.iter().zip(&again).all(|(a, b)| a.id == b.id));
+    }
+
+    /// What the ids were before there was a limit to hashing.
+    #[test]
+    fn few_collisions_are_resolved_by_hashing() {
+        let next = |id: i64| positive(scramble(id as u64));
+        assert_eq!(changed_ids(vec![7, 7, 7].into_par_iter()), [(1, next(7)), (2, next(next(7)))]);
+        assert_eq!(changed_ids(vec![7, next(7), 7].into_par_iter()), [(2, next(next(7)))]);
+    }
+
+    /// Anybody can name nodes so that many edges have one id: one by one along the hashes that would be 10^10 steps.
+    #[test]
+    fn edges_forged_to_one_id_become_distinct_in_few_steps() {
+        let mut ids = vec![i64::MAX - 3; 200_000];
+        ids.extend([1, 2, 3, 5]);
+        let changed = changed_ids(ids.par_iter().copied());
+        assert_eq!(changed.len(), 199_999);
+        changed.iter().for_each(|&(edge, id)| ids[edge as usize] = id);
+        let distinct: FxHashSet<i64> = ids.iter().copied().collect();
+        assert!(distinct.len() == ids.len() && ids.iter().all(|&id| id > 0));
+    }
+
+    #[test]
+    fn counting_passes_what_is_taken_once() {
+        let (mut onward, mut given) = (Onward::default(), FxHashSet::default());
+        let looked = std::cell::Cell::new(0);
+        for _ in 0..10_000 {
+            let taken = |id: i64| {
+                looked.set(looked.get() + 1);
+                given.contains(&id) || id > i64::MAX - 100
+            };
+            let id = onward.free(i64::MAX - 50, taken);
+            given.insert(id);
+        }
+        assert!(looked.get() < 10 * 10_000, "{}", looked.get());
+        assert_eq!(given, (1..=10_000).collect());
     }
 }
