@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M, STEP_M};
 use super::index::Index;
 use super::names::{Fit, Wanted, told};
-use super::rivals::{Standing, followed, standing};
+use super::rivals::{Beside, Standing, followed, standing};
 use super::track::Track;
 use super::{Found, Match, TOLD, unmatched};
 use crate::evidence::row::Row;
@@ -37,12 +37,12 @@ pub(super) fn matched(index: &Index<'_>, row: &Row, line: &[LonLat]) -> Found {
 }
 
 fn decided(index: &Index<'_>, all: &[Candidate<'_>], line_m: f64) -> Found {
-    let follows = followed(all, line_m);
+    let (follows, beside) = (followed(all, line_m), Beside::new(all));
     let mut edges = Vec::new();
     let mut beaten = vec![false; all.len()];
     for (i, candidate) in all.iter().enumerate().filter(|(_, candidate)| candidate.name != Fit::Differs) {
         let covered = candidate.covered >= COVERED && !candidate.by_chance(line_m);
-        match standing(all, &follows, i) {
+        match standing(all, &follows, &beside, i) {
             Standing::Alone if covered => edges.extend(&candidate.edges),
             Standing::Ties(others) if covered => {
                 let all = std::iter::once(i).chain(others).map(|i| &all[i]);
