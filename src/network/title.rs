@@ -5,6 +5,8 @@
 use std::collections::BinaryHeap;
 use std::sync::OnceLock;
 
+use rustc_hash::FxHashSet;
+
 use super::{Edge, Network, Road};
 use crate::osm::facts::{Oneway, RoadClass};
 use crate::words::Named as _;
@@ -85,7 +87,7 @@ impl Network {
         let reach_m = if self.road(edge).link { REACH_OF_LINK_M } else { REACH_M };
         // The nearest node first; distances are in whole decimetres, so that they can be sorted.
         let mut open = BinaryHeap::from([(std::cmp::Reverse(0_u64), node(edge, end))]);
-        let (mut seen, mut closed) = (vec![edge.shape.start], Vec::new());
+        let (mut seen, mut closed) = (FxHashSet::from_iter([edge.shape.start]), Vec::new());
         while let Some((std::cmp::Reverse(far), at)) = open.pop() {
             if closed.contains(&at) {
                 continue;
@@ -103,7 +105,7 @@ impl Network {
                     best = best.into_iter().chain([(road.link, road.class, index)]).min();
                     continue;
                 }
-                seen.push(next.shape.start);
+                seen.insert(next.shape.start);
                 let further = far + (10.0 * self.length_m(next)) as u64;
                 if (further as f64) < 10.0 * reach_m && seen.len() < MOST_EDGES {
                     open.push((std::cmp::Reverse(further), node(next, end)));
@@ -134,5 +136,28 @@ fn kind(road: &Road) -> String {
         _ if road.link => "link".to_owned(),
         RoadClass::Motorway | RoadClass::Track | RoadClass::Busway | RoadClass::LivingStreet => plain,
         _ => format!("{plain} road"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::corridor::tests::network;
+    use crate::network::Edge;
+    use crate::osm::facts::CrossSection;
+
+    /// A list of the edges seen would be searched for each of them: 10^11 comparisons.
+    #[test]
+    fn a_title_at_a_node_of_very_many_driveways_takes_few_looks() {
+        let none = CrossSection { lane: None, direction: None, carriageway: None };
+        let (mut n, _) = network(&[(vec![[0.0, 0.0], [10.0, 0.0]], none)], false);
+        let (one, ends) = (n.edges[0].clone(), n.shapes.clone());
+        for k in 0..300_000 {
+            let start = n.shapes.len() as u32;
+            n.shapes.extend(&ends);
+            n.edges.push(Edge { id: 10 + k, from_node: 10 + k, to_node: 0, shape: start..start + 2, ..one.clone() });
+        }
+        for _ in 0..3 {
+            assert_eq!(n.title(&one), "primary road (way 0)");
+        }
     }
 }
