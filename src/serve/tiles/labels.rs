@@ -64,7 +64,7 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
         }
         let mut line = road.line.clone();
         for _ in 0..2 {
-            while let Some((next, more)) = onward(&line, edges, &ends, &used) {
+            while let Some((next, more)) = onward(&line, edges, &mut ends, &used) {
                 used[next] = true;
                 line.extend(more.into_iter().skip(1));
             }
@@ -75,22 +75,30 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
     labels
 }
 
-/// The unused edge that continues the line most nearly straight, with its positions in the line's direction.
-fn onward(line: &[LonLat], edges: &[&MapEdge<'_>], ends: &Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
+/// The unused edge that continues the line most nearly straight, with its positions in the line's direction. Used ones are taken out of
+/// `ends`, so that they are not looked at again.
+fn onward(line: &[LonLat], edges: &[&MapEdge<'_>], ends: &mut Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
     let [.., before, end] = line else { return None };
-    let mut best: Option<(f64, usize, Vec<LonLat>)> = None;
-    for &i in ends.get(&key(Some(end)))?.iter().filter(|&&i| !used[i]) {
-        let mut more = edges[i].line.clone();
-        if more.first() != Some(end) {
-            more.reverse();
-        }
-        let [start, then, ..] = more.as_slice() else { continue };
+    let mut best: Option<(f64, usize)> = None;
+    let free = ends.get_mut(&key(Some(end)))?;
+    free.retain(|&i| !used[i]);
+    for &i in free.iter() {
+        let (start, then) = match edges[i].line.as_slice() {
+            [start, then, ..] if start == end => (start, then),
+            [.., then, start] => (start, then),
+            _ => continue,
+        };
         let cosine = cosine(direction(before, end), direction(start, then));
-        if cosine >= best.as_ref().map_or(LEAST_COSINE, |best| best.0) {
-            best = Some((cosine, i, more));
+        if cosine >= best.map_or(LEAST_COSINE, |best| best.0) {
+            best = Some((cosine, i));
         }
     }
-    best.map(|(_, i, more)| (i, more))
+    let (_, i) = best?;
+    let mut more = edges[i].line.clone();
+    if more.first() != Some(end) {
+        more.reverse();
+    }
+    Some((i, more))
 }
 
 fn key(position: Option<&LonLat>) -> (i32, i32) {
@@ -170,5 +178,19 @@ mod tests {
         let ring: Vec<MapEdge<'_>> = (0..8_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
         assert_eq!(lines(&ring).len(), 1);
         assert!(labels(&ring, 10).is_empty());
+    }
+
+    /// Copies of all lines at the node for each line would be 10^10 positions.
+    #[test]
+    fn many_long_roads_of_one_name_at_a_place_take_no_copies() {
+        // All have other ends and other directions, and no two are straight.
+        let spoke = |i: i32| -> Vec<(i32, i32)> {
+            (0..2_000).map(|k| (k * (1 + i % 60) + k.min(1) * i, k * (1 + i / 60) + k.min(1) * i)).collect()
+        };
+        let rows: Vec<MapEdge<'_>> = (0..3_000_u32)
+            .map(|i| MapEdge { way_id: i64::from(i), ..edge(i, "High Street", &spoke(i as i32)) })
+            .collect();
+        let positions: usize = labels(&rows, 14).iter().map(|label| label.line.len()).sum();
+        assert!(positions >= 3_000 * 1_999, "{positions}");
     }
 }

@@ -107,7 +107,7 @@ fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
         }
         let mut line = vec![a, b];
         for _ in 0..2 {
-            while let Some(next) = onward(&line, pieces, &at, &mut used) {
+            while let Some(next) = onward(&line, pieces, &mut at, &mut used) {
                 line.push(next);
             }
             line.reverse();
@@ -118,16 +118,17 @@ fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     lines
 }
 
-/// The far end of the unused piece that continues the line most nearly straight. Marks the piece as used.
-fn onward(line: &[Cell], pieces: &[Piece], at: &BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
+/// The far end of the unused piece that continues the line most nearly straight. Marks the piece as used. Used ones are taken out of `at`.
+fn onward(line: &[Cell], pieces: &[Piece], at: &mut BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
     let [.., before, end] = line else { return None };
     let other = |&i: &usize| if pieces[i].0 == *end { pieces[i].1 } else { pieces[i].0 };
     let straight = |i: &usize| {
         let (u, v) = (step(*before, *end), step(*end, other(i)));
         (u[0] * v[0] + u[1] * v[1]) / (v[0].hypot(v[1]) * u[0].hypot(u[1])).max(1e-9)
     };
-    let free = at.get(end)?.iter().filter(|&&i| !used[i]);
-    let next = *free.max_by(|a, b| straight(a).total_cmp(&straight(b)))?;
+    let free = at.get_mut(end)?;
+    free.retain(|&i| !used[i]);
+    let next = *free.iter().max_by(|a, b| straight(a).total_cmp(&straight(b)))?;
     used[next] = true;
     Some(other(&next))
 }
