@@ -40,6 +40,8 @@ const TOLERANCE_M: f64 = 2.0;
 const LEAST_SIDE_M: f64 = 10.0;
 /// The greatest number of a hole's vertices that are tried, to find the outline around the hole.
 const MOST_VERTICES: usize = 16;
+/// The greatest number of outlines around a vertex that are tried. Outlines do not overlap, and few boxes around them do.
+const MOST_OUTLINES: usize = 64;
 /// Vertices that are simplified together. The time for so many grows with their square.
 const TOGETHER: usize = 500;
 const METRES_PER_E7: f64 = 0.011_131_949;
@@ -99,7 +101,7 @@ pub(super) fn polygons(outer: Vec<Vec<LonLat>>, inner: &[Vec<LonLat>]) -> Vec<Ve
     for hole in inner {
         let inside = |&vertex: &LonLat| {
             let point = Point(coord(vertex));
-            let near = boxes.locate_all_at_point(&point.x_y()).map(|found| found.data);
+            let near = boxes.locate_all_at_point(&point.x_y()).take(MOST_OUTLINES).map(|found| found.data);
             near.filter(|&at| outlines.get(at).is_some_and(|outline| outline.contains(&point))).min()
         };
         // A vertex on the outline tells nothing, so some are tried. Their number is bounded, and so is the time.
@@ -192,6 +194,26 @@ mod tests {
         let ways: Vec<[i64; 3]> = (0..200_000).map(|k| [1, 10 + k, 2]).collect();
         let ways: Vec<&[i64]> = ways.iter().map(<[i64; 3]>::as_slice).collect();
         assert_eq!(rings(&ways).map(|rings| rings.len()), Some(100_000));
+    }
+
+    /// Outlines of which each one's box has each hole, and none the hole itself: 10^10 tests of sides.
+    #[test]
+    fn so_many_outlines_over_each_other_are_no_trap() {
+        let ring = |corners: &[(i32, i32)]| -> Vec<LonLat> {
+            corners.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect()
+        };
+        let corner = |k: i32| {
+            let a = 1_000_000 + k;
+            ring(&[(0, 0), (a, 0), (a, a), (a - 9, 9), (0, 0)])
+        };
+        let hole = |k: i32| {
+            let (x, y) = (10_000 + k % 100, 900_000 - k);
+            ring(&[(x, y), (x + 5_000, y), (x + 5_000, y + 5_000), (x, y + 5_000), (x, y)])
+        };
+        let outer: Vec<Vec<LonLat>> = (0..20_000).map(corner).collect();
+        let inner: Vec<Vec<LonLat>> = (0..20_000).map(hole).collect();
+        let found = polygons(outer, &inner);
+        assert!(found.len() == 20_000 && found.iter().all(|polygon| polygon.len() == 1));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 
 use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
+use rustc_hash::FxHashSet;
 
 use crate::osm::changes::{Changes, Kind};
 use crate::osm::facts::{BackdropForm, NoRule, TurnRule, backdrop_kind, turn_rules};
@@ -113,11 +114,16 @@ pub(super) fn area(message: &[u8], strings: &Strings<'_>, changed: &Changes) -> 
     }
     let Some(kind) = backdrop_kind(&tags).filter(|kind| kind.form() == BackdropForm::Area) else { return Ok(None) };
     let mut members = Vec::new();
+    // A member that is named again would be the same ring again, with all its nodes.
+    let mut known = FxHashSet::default();
     let mut member = 0;
     for ((&difference, kind), &role) in relation.memids.iter().zip(&relation.types).zip(&relation.roles_sid) {
         super::block::add(&mut member, difference, object, "a member")?;
         if kind.enum_value() == Ok(MemberType::WAY) {
-            members.push((member, strings.text(role as u64, object)? == "inner"));
+            let named = (member, strings.text(role as u64, object)? == "inner");
+            if known.insert(named) {
+                members.push(named);
+            }
         }
     }
     Ok(Some(AreaRelation { id: relation.id(), kind, name: value("name").map(Into::into), members }))
@@ -313,5 +319,21 @@ mod tests {
         let incomplete = tally(&[plain], &MEMBERS[..2]);
         assert_eq!((incomplete.kept(), incomplete.incomplete_restrictions), (1, 1));
         assert_eq!(reading(&[("type", "route")], MEMBERS).tally.restrictions, 0);
+    }
+
+    /// Each name is a few bytes of file; as a ring it would be all nodes of the way again.
+    #[test]
+    fn a_member_that_is_named_again_is_one_member() {
+        let strings = Strings::of(&["", "type", "multipolygon", "natural", "water", "outer", "inner"]);
+        let n = 100_000;
+        let mut relation = Relation::new();
+        relation.set_id(7);
+        (relation.keys, relation.vals) = (vec![1, 3], vec![2, 4]);
+        // Way 5 as outline again and again, then as a hole, and then way 6.
+        relation.memids = [5].into_iter().chain(std::iter::repeat_n(0, n)).chain([1]).collect();
+        relation.roles_sid = std::iter::repeat_n(5, n).chain([6, 5]).collect();
+        relation.types = std::iter::repeat_n(MemberType::WAY.into(), n + 2).collect();
+        let found = area(&relation.write_to_bytes().unwrap(), &strings, &Changes::default()).unwrap().unwrap();
+        assert_eq!(found.members, [(5, false), (5, true), (6, false)]);
     }
 }
