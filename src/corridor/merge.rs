@@ -178,6 +178,14 @@ fn normal(points: &[[f64; 2]], i: usize) -> [f64; 2] {
     sum.map(|s| 2.0 * s / squared)
 }
 
+/// Jogs that may lie beside a place of the line. They are in the order of the line, and elsewhere they have no effect.
+fn near(jogs: &[Jog], u: f64) -> &[Jog] {
+    let reach_m = MOST_REACH_M + FADE_M + 1.0;
+    let first = jogs.partition_point(|jog| jog.at < u - reach_m);
+    let end = jogs.partition_point(|jog| jog.at <= u + reach_m);
+    &jogs[first..end.max(first)]
+}
+
 /// A line without its jogs.
 pub(crate) struct Relaid {
     pub(crate) line: Polyline,
@@ -188,7 +196,7 @@ pub(crate) struct Relaid {
 impl Relaid {
     /// Builds the line without the jogs. `None` if it would fold.
     pub(crate) fn new(line: &Polyline, jogs: &[Jog]) -> Option<Self> {
-        let aside = |u: f64| jogs.iter().map(|jog| jog.aside(u)).sum::<f64>();
+        let aside = |u: f64| near(jogs, u).iter().map(|jog| jog.aside(u)).sum::<f64>();
         let mut cuts: Vec<f64> = jogs.iter().flat_map(Jog::cuts).filter(|u| (0.0..line.length()).contains(u)).collect();
         cuts.sort_unstable_by(f64::total_cmp);
         let mut cuts = cuts.into_iter().peekable();
@@ -243,5 +251,27 @@ impl Relaid {
         let to = self.at(jog.at - jog.reach_m);
         let always = Ramp { from: -2e3, to: -1e3, by_m: -jog.shift_m, node: usize::MAX };
         vec![always, Ramp { from: to - FADE_M, to, by_m: jog.shift_m, node: usize::MAX }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_jog_has_no_effect_beyond_its_surroundings() {
+        let jog = |k: u32| Jog {
+            at: 37.0 * f64::from(k),
+            ahead: k.is_multiple_of(3),
+            reach_m: if k.is_multiple_of(2) { MOST_REACH_M } else { LEAST_REACH_M },
+            shift_m: f64::from(k % 7) - 3.0,
+        };
+        let jogs: Vec<Jog> = (0..100).map(jog).collect();
+        for k in 0..4_500 {
+            let u = f64::from(k) - 300.0;
+            let all: f64 = jogs.iter().map(|jog| jog.aside(u)).sum();
+            assert_eq!(near(&jogs, u).iter().map(|jog| jog.aside(u)).sum::<f64>(), all, "{u}");
+            assert!(near(&jogs, u).len() <= 17);
+        }
     }
 }

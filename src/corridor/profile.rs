@@ -156,14 +156,18 @@ fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
 /// Around every place where the strip shifts sideways without a taper, adds the strip before or after the shift, as far
 /// as the lanes of the direction allow. Otherwise two strips 1.75 m apart would meet in a corridor of half a lane.
 fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
-    let mut out = stretches.to_vec();
+    // As long as a change, so that both edges move side by side at full width.
+    let length = (2 * REACH + 4) as f64 * knot_m;
+    // Stretches come into the list when a shift reaches them, so that one of many shifts moves only those around it.
+    let (mut out, mut rest) = (Vec::with_capacity(stretches.len()), stretches.iter().peekable());
     for pair in stretches.windows(2) {
         let [a, b] = pair else { continue };
         if a.strip.within(b.strip) || b.strip.within(a.strip) {
             continue;
         }
-        // As long as a change, so that both edges move side by side at full width.
-        let length = (2 * REACH + 4) as f64 * knot_m;
+        while let Some(next) = rest.next_if(|next| next.from < a.to + length) {
+            out.push(*next);
+        }
         let after = a.strip.within(b.shift);
         if after || !b.strip.within(a.shift) {
             allow(&mut out, a.to, a.to + length, a.strip);
@@ -172,13 +176,16 @@ fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
             allow(&mut out, a.to - length, a.to, b.strip);
         }
     }
+    out.extend(rest);
     out
 }
 
-/// Widens the stretches between `from` and `to` by `strip`, as far as their lanes reach.
+/// Widens the stretches between `from` and `to` by `strip`, as far as their lanes reach. Stretches follow each other.
 fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
-    let mut out = Vec::with_capacity(stretches.len() + 2);
-    for s in stretches.iter() {
+    let first = stretches.partition_point(|s| s.to <= from);
+    let end = stretches.partition_point(|s| s.from < to).max(first);
+    let mut out = Vec::with_capacity(end - first + 2);
+    for s in &stretches[first..end] {
         let (inner_from, inner_to) = (s.from.max(from), s.to.min(to));
         let Some(meet) = strip.meet(s.shift).filter(|_| inner_from < inner_to) else {
             out.push(*s);
@@ -192,7 +199,7 @@ fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
             out.push(Stretch { from: inner_to, ..*s });
         }
     }
-    *stretches = out;
+    stretches.splice(first..end, out);
 }
 
 /// The narrowest limits of every cell, `[left, right]`.
@@ -314,4 +321,72 @@ pub(crate) fn limit_offset(profile: &mut Profile, line: &Cubics<2>, most: f64, l
         *c = c.map(|across| across - share * c[2]);
     }
     bad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Stretches that follow each other: length, place of the strip, and whether its lanes are wider.
+    fn stretches(all: impl Iterator<Item = (f64, f64, bool)>) -> Vec<Stretch> {
+        let mut end = 0.0;
+        all.map(|(length_m, aside_m, wide)| {
+            let strip = Across { left_m: 1.5, right_m: -1.5 }.moved(aside_m);
+            let shift = if wide { Across { left_m: 6.0, right_m: -6.0 } } else { strip };
+            let from = end;
+            end += length_m;
+            Stretch { from, to: end, strip, shift, surface: shift, two_way: false, ratio: 8.0 }
+        })
+        .collect()
+    }
+
+    /// With the whole list built anew for each shift.
+    fn all_anew(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
+        let allow = |stretches: &[Stretch], from: f64, to: f64, strip: Across| -> Vec<Stretch> {
+            let one = |s: &Stretch| -> Vec<Stretch> {
+                let (inner_from, inner_to) = (s.from.max(from), s.to.min(to));
+                let Some(meet) = strip.meet(s.shift).filter(|_| inner_from < inner_to) else { return vec![*s] };
+                let wider = Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s };
+                let before = (s.from < inner_from).then_some(Stretch { to: inner_from, ..*s });
+                let behind = (inner_to < s.to).then_some(Stretch { from: inner_to, ..*s });
+                before.into_iter().chain([wider]).chain(behind).collect()
+            };
+            stretches.iter().flat_map(one).collect()
+        };
+        let mut out = stretches.to_vec();
+        let length = (2 * REACH + 4) as f64 * knot_m;
+        for (a, b) in stretches.iter().zip(&stretches[1..]) {
+            if a.strip.within(b.strip) || b.strip.within(a.strip) {
+                continue;
+            }
+            let after = a.strip.within(b.shift);
+            if after || !b.strip.within(a.shift) {
+                out = allow(&out, a.to, a.to + length, a.strip);
+            }
+            if !after {
+                out = allow(&out, a.to - length, a.to, b.strip);
+            }
+        }
+        out
+    }
+
+    proptest! {
+        #[test]
+        fn shifts_are_as_if_the_list_were_made_anew_for_each(
+            all in prop::collection::vec((0..60_u8, 0..4_u8, any::<bool>()), 1..40)
+        ) {
+            let all = all.into_iter().map(|(m, aside, wide)| (f64::from(m), f64::from(aside), wide));
+            let stretches = stretches(all);
+            prop_assert_eq!(with_shifts(&stretches, KNOT_M), all_anew(&stretches, KNOT_M));
+        }
+    }
+
+    /// A stroke of 40 km whose lane changes its place at each metre: 5·10^9 copies if the list were made anew for each change.
+    #[test]
+    fn a_shift_at_each_metre_moves_only_what_is_near() {
+        let stretches = stretches((0..40_000).map(|k| (1.0, f64::from(k % 2), true)));
+        let out = with_shifts(&stretches, KNOT_M);
+        assert!(out.windows(2).all(|w| w[0].to == w[1].from) && out.len() >= stretches.len());
+    }
 }
