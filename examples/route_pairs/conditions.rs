@@ -122,6 +122,7 @@ fn lawful(region: &Region) -> Access {
             .map(|m| if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { 0 })
             .collect(),
         passages: movements.passages().iter().map(|p| if p.forbidden.is_some() { BARRED } else { 0 }).collect(),
+        pass_through: BARRED,
     }
 }
 

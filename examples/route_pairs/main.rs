@@ -66,7 +66,7 @@ impl Region {
     }
 
     fn graph(&self) -> Graph {
-        Graph::new(&self.roads, &Speeds::builtin().unwrap(), Measure::Time)
+        Graph::new(&self.roads, &Speeds::builtin().unwrap(), Measure::Time).for_vehicle(&self.driver.model.vehicle)
     }
 
     /// A vertex of one of these edges.

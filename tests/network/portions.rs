@@ -60,7 +60,7 @@ fn strokes(portion: &Portion) -> BTreeMap<u32, String> {
 }
 
 fn restrictions(portion: &Portion) -> Vec<String> {
-    let text = |PortionRestriction { rule, restriction, edges }: PortionRestriction| {
+    let text = |PortionRestriction { rule, restriction, edges, .. }: PortionRestriction| {
         format!("{} {:?} {} {edges:?} {rule:?}", restriction.relation_id, restriction.kind, restriction.conditional)
     };
     portion.restrictions().map(text).collect()

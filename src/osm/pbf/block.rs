@@ -76,11 +76,6 @@ impl<'a> Strings<'a> {
 }
 
 impl<'a> Strings<'a> {
-    #[cfg(test)]
-    pub(super) fn of(texts: &[&'a str]) -> Self {
-        Self { texts: texts.iter().map(|text| Some(*text)).collect() }
-    }
-
     fn extend(&mut self, table: &'a [u8]) -> Result<(), Problem> {
         let mut cursor = Cursor::new(table);
         while let Some(field) = cursor.field()? {

@@ -1,6 +1,8 @@
 //! The roads as a plain graph: edges, and the steps between them. Restrictions over ways are ignored, as in `components`.
 
-use rustc_hash::FxHashMap;
+use std::collections::VecDeque;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::network::{MovementKind, Network};
 use crate::route::conditions::{edge_price, turn_price};
@@ -77,6 +79,19 @@ impl Joints {
     /// Number of edges.
     pub(super) fn edges(&self) -> usize {
         self.edges
+    }
+
+    /// The nearest edge that is open to through traffic, over usable edges that are not. The edge itself if it is such an edge.
+    pub(super) fn way_out(&self, edge: u32, usable: impl Fn(u32) -> bool) -> Option<u32> {
+        let (mut open, mut seen) = (VecDeque::from([edge]), FxHashSet::from_iter([edge]));
+        while let Some(at) = open.pop_front() {
+            if !self.ends_only.has(at) {
+                return Some(at);
+            }
+            let next = self.after(at).map(|step| step.to).filter(|&to| usable(to) && seen.insert(to));
+            open.extend(next);
+        }
+        None
     }
 
     /// Number of items.

@@ -78,7 +78,10 @@ fn anchor(
     (prices, lengths_m): (&[u32], &[f64]),
     from: &[u32],
 ) -> Option<u32> {
-    let usable = from.iter().copied().filter(|&edge| driver.permits.edge(edge));
+    let usable = |edge: u32| driver.permits.edge(edge);
+    // A journey that begins on a road to a destination goes on on the road before it.
+    let usable =
+        from.iter().copied().filter(|&edge| usable(edge)).map(|edge| joints.way_out(edge, usable).unwrap_or(edge));
     let length_m = |&edge: &u32| Part::of(joints, prices, edge).length_m(lengths_m);
     if let Some(edge) = usable.max_by(|a, b| length_m(a).total_cmp(&length_m(b))) {
         return Some(edge);
