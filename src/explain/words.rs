@@ -267,7 +267,10 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
 fn unknown(e: &Explanation, reason: UnknownReason) -> String {
     let on = on_road(e);
     let said = match (reason, &e.conflict) {
-        (UnknownReason::Width, _) => format!("unknown: no width of the {} can be derived", e.strip_name()),
+        (UnknownReason::Width, _) => format!(
+            "unknown: no width of the {} can be derived: a tagged width cannot be read, or the lanes are for others",
+            e.strip_name()
+        ),
         (UnknownReason::Geometry, _) => {
             "unknown: the line on the map gives no corridor: too short, folded back on itself, \
                                          or too crooked for a smooth line within the tolerance"
