@@ -117,6 +117,7 @@ const reasons: Record<string, string> = {
   "unknown/failed": "Machine failed",
   "unknown/time": "Closed at some times",
   "unknown/rule": "Rule not understood",
+  "unknown/took_too_long": "Took too long",
 };
 
 export function reasonWords(verdict: string, reason: string | null | undefined): string {
