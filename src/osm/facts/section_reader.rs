@@ -236,13 +236,15 @@ impl SectionReader {
     /// the lists of its direction.
     fn one_way(&self, lists: &[Lists; 3], own: usize) -> (LaneTags, LaneTags, bool) {
         let (plain, with_suffix, against) = (&lists[0], &lists[own], &lists[3 - own]);
-        let tagged = against.count.max(against.lanes()).max(against.bus).max(u8::from(self.oncoming_lane));
+        let for_buses = against.bus.max(u8::from(self.oncoming_lane));
+        let spare = plain.count.saturating_sub(with_suffix.count.max(1));
         let oncoming = match (with_suffix.count, plain.count) {
-            (1.., 1..) => tagged.max(plain.count.saturating_sub(with_suffix.count)),
-            // Buses that may come need one of the lanes, unless there is only one for all.
-            (0, 2..) => tagged.max(u8::from(self.oncoming)),
-            (0, 0) if self.widths.iter().any(Option::is_some) => tagged.max(u8::from(self.oncoming)),
-            _ => tagged,
+            (1.., 1..) => for_buses.max(spare),
+            // Lanes against the direction that nobody counted are left from before a road was mapped as two. Buses that
+            // may come need one of the lanes, unless there is only one for all.
+            (0, 2..) => for_buses.max(spare.min(against.count.max(against.lanes()))).max(u8::from(self.oncoming)),
+            (0, 0) if self.widths.iter().any(Option::is_some) => for_buses.max(u8::from(self.oncoming)),
+            _ => for_buses,
         };
         let mut tags = plain.or(*with_suffix).tags();
         tags.count = match (with_suffix.count, plain.count) {

@@ -169,6 +169,12 @@ fn lanes_of_oncoming_buses_are_not_those_of_a_lorry() {
         // One lane for all, and a permission alone makes no road wider.
         ("lanes=1 oneway:bus=no width=5", "250..-250 | 250..-250 | 250..-250"),
         ("oneway:bus=no", "150..-150 | 150..-150 | 150..-150"),
+        // Left from before a road was mapped as two.
+        ("lanes:forward=3 lanes:backward=3", "-150..-450 | 450..-450 | 450..-450"),
+        ("lanes=3 lanes:forward=3 lanes:backward=3", "-150..-450 | 450..-450 | 450..-450"),
+        ("lanes:backward=2", "150..-150 | 150..-150 | 150..-150"),
+        ("bus:lanes:backward=|designated", "150..-150 | 150..-150 | 150..-150"),
+        ("lanes=2 lanes:backward=5", "0..-300 | 0..-300 | 300..-300"),
         // A lane in the same direction.
         ("lanes=2 lanes:psv=1 width=7", "350..0 | 350..0 | 350..-350"),
         ("lanes=2 lanes:psv:forward=1 width=7", "350..0 | 350..0 | 350..-350"),
