@@ -345,17 +345,16 @@ fn plan_as_on(
         let models: Vec<&Model> = lacking.iter().map(|&v| &job.models[v]).collect();
         let mut wide = None;
         for (&v, found) in lacking.iter().zip(best_planned(&narrow, &models, &job.settings.stet)) {
-            let Some(code) =
-                found.filter(|found| found.result.safe() || found.nearly_fits()).map(|found| found.path.code)
-            else {
-                continue;
-            };
+            let Some(found) = found.filter(|found| found.result.safe() || found.nearly_fits()) else { continue };
             let wide = wide.get_or_insert_with(|| turn_on(job.network, over, &here, policy, params, reach));
             let Ok(wide) = wide else { break };
             let (mut best, grounds) = (None, Grounds::default());
-            let planned = Planned { code, score_m: 0.0, room_m: 0.0 };
+            let planned = Planned { code: found.path.code, score_m: 0.0, room_m: 0.0 };
             let how = (Some(&job.settings.stet), f64::NEG_INFINITY);
-            try_path((wide, &grounds), planned, &job.models[v], how, &mut best);
+            follow_path((wide, &grounds), &found, &job.models[v], &mut best);
+            if !best.as_ref().is_some_and(|best| best.result.safe()) {
+                try_path((wide, &grounds), planned, &job.models[v], how, &mut best);
+            }
             if best.as_ref().is_some_and(|best| best.result.safe()) {
                 better.push((v, certificate(made.turn, best)));
             }
@@ -534,6 +533,14 @@ fn try_path(
             return;
         }
     }
+}
+
+/// Certifies the path of a plan, with its corrections, on other roads.
+fn follow_path((made, grounds): (&TurnCorridors, &Grounds), known: &Best, model: &Model, best: &mut Option<Best>) {
+    let Some(path) = made.path(known.path.code) else { return };
+    let Some(course) = Course::new(&path.corridor, model, &path.counted, grounds) else { return };
+    let Some(row) = course.follow(&known.plan) else { return };
+    *best = row.spans.into_iter().next().map(|result| Best { path: path.clone(), result, plan: row.plan });
 }
 
 /// Orders results: safe first, then closed bounds, then the greater RSC. Ties keep the first one.

@@ -88,11 +88,12 @@ where
         let ring_radius_m = if way.facts.roundabout { mean_radius_m(positions()) } else { None };
         part.account.no_country += u64::from(place.country == Place::NOWHERE.country);
         let road = road(way, &place, (self.sections)(&way.facts, &place, ring_radius_m));
+        let oneway = on_a_ring(way.facts.roundabout, way.facts.oneway);
         let base = part.network.shapes.len();
         part.network.shapes.extend(positions());
         let edges = part.network.edges.len();
         for piece in &cut.pieces {
-            self.add_piece(&road, cut, piece, base, part);
+            self.add_piece((&road, oneway), cut, piece, base, part);
         }
         number(&mut part.network.edges[edges..], way.id);
         if self.vertices.go_on_over_the_antimeridian() {
@@ -112,7 +113,7 @@ where
         }
     }
 
-    fn add_piece(&self, road: &Road, cut: &CutWay, piece: &Piece, base: usize, part: &mut Part) {
+    fn add_piece(&self, (road, oneway): (&Road, Oneway), cut: &CutWay, piece: &Piece, base: usize, part: &mut Part) {
         let line = &cut.line[piece.vertices.clone()];
         let narrowings = part.network.narrowings.len() as u32;
         let mut barred = false;
@@ -130,7 +131,7 @@ where
         let ends = [node(line.first()), node(line.last())];
         for direction in [Direction::Forward, Direction::Backward] {
             part.account.directions += 1;
-            if !driven(road.oneway, direction) {
+            if !driven(oneway, direction) {
                 part.account.not_driven += 1;
                 continue;
             }
@@ -201,8 +202,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         class: facts.class,
         link: facts.link,
         roundabout: facts.roundabout,
-        // Nobody drives a roundabout against its direction, whatever its other tags say.
-        oneway: if facts.roundabout && facts.oneway == Oneway::No { Oneway::Forward } else { facts.oneway },
+        oneway: on_a_ring(facts.roundabout, facts.traffic()),
         name: facts.name,
         reference: facts.reference,
         lanes: facts.tagged_lanes(),
@@ -212,6 +212,11 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         legal: [facts.legal_forward.clone(), facts.legal_backward.clone()],
         max_speed_km_h: facts.max_speed_km_h,
     }
+}
+
+/// Nobody drives a roundabout against its direction, whatever its other tags say.
+fn on_a_ring(roundabout: bool, oneway: Oneway) -> Oneway {
+    if roundabout && oneway == Oneway::No { Oneway::Forward } else { oneway }
 }
 
 fn driven(oneway: Oneway, direction: Direction) -> bool {

@@ -127,7 +127,9 @@ fn reach_does_not_pass_through() {
     .way("DE", "highway=residential hgv=destination")
     .way("EF", ROAD)
     .way("BLKA", ROAD)
-    .way("FNME", ROAD);
+    .way("FNME", ROAD)
+    .way("LA", ROAD)
+    .way("MF", ROAD);
     let graph = graph(&map);
     let edge = |ends: &str| ascii_map::edge(graph.network(), ends) as usize;
     let access = graph.open_access();

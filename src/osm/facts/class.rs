@@ -69,6 +69,8 @@ fn oneway_tag(value: &str, notes: &mut Notes) -> Option<OnewayTag> {
 #[derive(Debug, Default)]
 struct Basics<'t> {
     oneway: Option<OnewayTag>,
+    /// `oneway:vehicle` and `oneway:motor_vehicle`, which say more of the traffic on the road than `oneway`.
+    oneway_motor: [Option<OnewayTag>; 2],
     roundabout: bool,
     area: bool,
     service: &'t str,
@@ -81,6 +83,8 @@ impl<'t> Basics<'t> {
     fn take(&mut self, key: &str, value: &'t str, notes: &mut Notes) {
         match key {
             "oneway" => self.oneway = oneway_tag(value, notes),
+            "oneway:vehicle" => self.oneway_motor[0] = oneway_tag(value, &mut Notes::default()),
+            "oneway:motor_vehicle" => self.oneway_motor[1] = oneway_tag(value, &mut Notes::default()),
             "junction" => self.roundabout = matches!(value, "roundabout" | "circular"),
             "area" => self.area = value == "yes",
             "service" => self.service = value,
@@ -95,6 +99,22 @@ impl<'t> Basics<'t> {
     fn implied_oneway(&self, class: RoadClass, link: bool) -> bool {
         self.roundabout || (class == RoadClass::Motorway && !link)
     }
+}
+
+fn directions(tag: OnewayTag) -> Oneway {
+    match tag {
+        OnewayTag::Forward => Oneway::Forward,
+        OnewayTag::Backward => Oneway::Backward,
+        OnewayTag::No | OnewayTag::Reversible | OnewayTag::Alternating => Oneway::No,
+    }
+}
+
+/// The directions for which the carriageway is laid out: those of general traffic. If lorries have others, both share the road.
+fn traffic(basics: &Basics<'_>, legal: &LegalTags<'_>, implied: bool, general: Oneway) -> Oneway {
+    let [vehicle, motor_vehicle] = basics.oneway_motor;
+    let general = motor_vehicle.or(vehicle).map_or(general, directions);
+    let lorries = legal.oneway(implied, |class| class.keys.iter().any(|key| key == "hgv")).unwrap_or(general);
+    if lorries == general { general } else { Oneway::No }
 }
 
 /// Reads the facts of a way from its tags.
@@ -136,11 +156,9 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
 
     let implied = basics.implied_oneway(class, link);
     let oneway_tag = basics.oneway.unwrap_or(if implied { OnewayTag::Forward } else { OnewayTag::No });
-    let oneway = legal.oneway(implied).unwrap_or(match oneway_tag {
-        OnewayTag::Forward => Oneway::Forward,
-        OnewayTag::Backward => Oneway::Backward,
-        OnewayTag::No | OnewayTag::Reversible | OnewayTag::Alternating => Oneway::No,
-    });
+    let general = directions(oneway_tag);
+    let oneway = legal.oneway(implied, |_| true).unwrap_or(general);
+    let traffic = traffic(&basics, &legal, implied, general);
     legal.note_rules(&mut notes);
     let mut legals = [Direction::Forward, Direction::Backward].map(|direction| legal.resolve(direction, implied));
     if oneway_tag == OnewayTag::Reversible {
@@ -150,7 +168,7 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         }
     }
     let section =
-        section.finish(oneway, oneway_tag == OnewayTag::Reversible, oneway_tag == OnewayTag::Alternating, &mut notes);
+        section.finish(traffic, oneway_tag == OnewayTag::Reversible, oneway_tag == OnewayTag::Alternating, &mut notes);
     let [legal_forward, legal_backward] = legals;
     Ok(WayDraft {
         facts: WayFacts {

@@ -14,8 +14,10 @@ pub struct GivenRoad {
     pub class: RoadClass,
     /// Whether it is a slip road.
     pub link: bool,
-    /// Directions that exist.
+    /// Directions that exist for some vehicle.
     pub oneway: Oneway,
+    /// Directions for which the carriageway is laid out.
+    pub traffic: Oneway,
     /// Limits and access along the line, and against it.
     pub legal: [Legal; 2],
     /// Speed limits along the line, and against it, km/h.
@@ -50,7 +52,7 @@ impl GivenRoad {
             legal_forward,
             legal_backward,
             max_speed_km_h: self.max_speed_km_h,
-            section: section.finish(self.oneway, false, false, notes),
+            section: section.finish(self.traffic, false, false, notes),
         }
     }
 }

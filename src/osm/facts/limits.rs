@@ -206,9 +206,9 @@ impl<'t> LegalTags<'t> {
         legal
     }
 
-    /// The directions of travel, if tags give them by vehicle or time.
-    pub(super) fn oneway(&self, implied: bool) -> Option<Oneway> {
-        self.rules.oneway(implied)
+    /// The directions of travel that exist for some vehicle of `those` classes, if tags give them by vehicle or time.
+    pub(super) fn oneway(&self, implied: bool, those: impl Fn(&crate::vehicle::Class) -> bool) -> Option<Oneway> {
+        self.rules.oneway(implied, those)
     }
 
     /// Adds remarks on rules.

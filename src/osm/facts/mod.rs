@@ -225,7 +225,7 @@ pub struct WayFacts {
     pub link: bool,
     /// `junction=roundabout|circular`
     pub roundabout: bool,
-    /// Directions that exist for motor vehicles.
+    /// Directions that exist for some vehicle.
     pub oneway: Oneway,
     /// `name`
     pub name: Option<StringId>,
@@ -242,6 +242,19 @@ pub struct WayFacts {
 }
 
 impl WayFacts {
+    /// The directions for which the carriageway is laid out: those of general traffic. [`Self::oneway`] has more where some vehicle may
+    /// drive against it, such as a bus; no width is known there.
+    #[must_use]
+    pub fn traffic(&self) -> Oneway {
+        if self.section.is(section::Mark::Along) {
+            Oneway::Forward
+        } else if self.section.is(section::Mark::Against) {
+            Oneway::Backward
+        } else {
+            Oneway::No
+        }
+    }
+
     /// Lanes of the carriageway as tagged, both directions together.
     #[must_use]
     pub fn tagged_lanes(&self) -> Option<u8> {

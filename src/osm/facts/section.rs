@@ -136,6 +136,10 @@ pub(super) enum Mark {
     /// The lists of one direction cover the whole road, from left to right in that direction. It is forward on a two-way
     /// road.
     WholeRoad = 16,
+    /// The carriageway is laid out for traffic along the way's node order only.
+    Along = 32,
+    /// The carriageway is laid out for traffic against the way's node order only.
+    Against = 64,
 }
 
 /// A set of [`Mark`]s.

@@ -167,7 +167,7 @@ impl SectionReader {
         }
     }
 
-    /// Combines the tags, once the way's directions are known.
+    /// Combines the tags, once the directions are known for which the carriageway is laid out.
     pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
         let mut lists = self.lists;
         let both_ways = self.both_ways.max(self.middle.lanes()).max(self.middle.turns);
@@ -216,6 +216,8 @@ impl SectionReader {
                 (Mark::Reversible, reversible),
                 (Mark::Alternating, alternating),
                 (Mark::WholeRoad, whole_road),
+                (Mark::Along, oneway == Oneway::Forward),
+                (Mark::Against, oneway == Oneway::Backward),
             ]),
             lanes: lists[0].count,
             both_ways,

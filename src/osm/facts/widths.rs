@@ -42,7 +42,7 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64
         kerb_rule: rules.kerb,
     };
     let one = |direction| builder.one_way(direction).section(direction, place.left_hand_traffic);
-    match facts.oneway {
+    match facts.traffic() {
         Oneway::Forward => [one(Direction::Forward), NO_SECTION],
         Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
         Oneway::No if facts.section.is(Mark::Reversible) => [one(Direction::Forward), one(Direction::Backward)],

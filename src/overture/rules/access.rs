@@ -246,9 +246,9 @@ impl Outcome {
         [general.into_iter().max().unwrap_or_default(), own]
     }
 
-    /// Limits and access by heading, and the directions that exist for some vehicle. What differs for buses, and what depends on times or
+    /// Limits and access by heading; the directions that exist for some vehicle, and those of lorries. What differs for buses, and what depends on times or
     /// axles, becomes rules as tags would say them.
-    pub(super) fn with_buses(self, buses: &Self) -> ([Legal; 2], Oneway) {
+    pub(super) fn with_buses(self, buses: &Self) -> ([Legal; 2], [Oneway; 2]) {
         let oneway = if self.oneway == buses.oneway { self.oneway } else { Oneway::No };
         let mut legal = self.limits.clone();
         for (heading, legal) in legal.iter_mut().enumerate() {
@@ -263,7 +263,7 @@ impl Outcome {
             }
             legal.rules = self.rules(buses, heading);
         }
-        (legal, oneway)
+        (legal, [oneway, self.oneway])
     }
 
     /// What holds at all times, with the direction of travel.

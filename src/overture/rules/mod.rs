@@ -181,7 +181,7 @@ impl Rules {
             effects.iter().filter(|(range, _)| holds(range)).for_each(|(_, effect)| access.apply(effect));
             access.finish()
         };
-        let (mut legal, oneway) = all(&self.access).with_buses(&all(&self.buses));
+        let (mut legal, [oneway, traffic]) = all(&self.access).with_buses(&all(&self.buses));
         if self.closed.iter().any(holds) {
             let closed = Legal { motor_vehicle: Permission::No, ..Legal::default() };
             legal = legal.map(|legal| legal.merge(&closed));
@@ -194,7 +194,7 @@ impl Rules {
         }
         let widths = self.widths.iter().filter(|(range, _)| holds(range)).map(|(_, width)| *width);
         let link = self.link || self.links.iter().any(holds);
-        GivenRoad { class, link, oneway, legal, max_speed_km_h, width_m: widths.reduce(f64::min) }
+        GivenRoad { class, link, oneway, traffic, legal, max_speed_km_h, width_m: widths.reduce(f64::min) }
     }
 
     /// The refs of the routes over a part, each once.

@@ -75,7 +75,7 @@ fn no_value_is_rounded_up_over_its_law() {
     const FOOT_M: f64 = 0.3048;
     let catalogue = Catalogue::builtin().unwrap();
     let close = |value: f64, law: f64, what: &str| {
-        assert!(value <= law + 1e-9 && value > law - 0.02, "{what}: {value} of {law}");
+        assert!(value <= law + 1e-9 && value > law - 0.05, "{what}: {value} of {law}");
     };
     for (id, pounds, axle_pounds, width_ft, length_ft, height_ft) in [
         ("US-WB40", 80e3, 20e3, 8.0, 45.5, 13.5),

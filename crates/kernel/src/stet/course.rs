@@ -8,6 +8,7 @@ use netcert_base::stop::Stop;
 
 use super::plan::Unplanned;
 use super::plane::Grounds;
+use super::shift::{self, Plan};
 use super::swept::Swept;
 use super::track::Track;
 use super::{Case, Marks, Model, Options, Planned, finished, plan, track};
@@ -51,5 +52,25 @@ impl<'c> Course<'c> {
         }
         let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };
         Some(finished(swept, &case, Marks::Ends, options, &never))
+    }
+
+    /// Certifies the vehicle along a plan that was made on another corridor, such as a narrower one. `None` if the plan does not fit the
+    /// number of stations.
+    #[must_use]
+    pub fn follow(&self, plan: &Plan) -> Option<Planned> {
+        let never = Stop::default();
+        let spans = std::slice::from_ref(&self.span);
+        if plan.coefficients.len() != shift::count(self.corridor.len()) {
+            return None;
+        }
+        let mut swept = Swept::ready(Rc::clone(&self.track), self.model, plan.clone(), spans, &never);
+        if self.corridor.areas.is_empty() {
+            swept.measure_spans();
+        } else if !swept.measure_least(&self.span, f64::NEG_INFINITY, f64::INFINITY) {
+            return None;
+        }
+        let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };
+        let as_given = Options { correction_sweeps: 0, max_shift_m: 0.0 };
+        Some(finished(swept, &case, Marks::Ends, &as_given, &never))
     }
 }

@@ -7,7 +7,7 @@ use super::subject::{At, Subject};
 use super::{Legal, Property};
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::{Direction, Limit, LimitKind, Oneway, Permission};
-use crate::vehicle::{Classes, EVERYBODY};
+use crate::vehicle::{Class, Classes, EVERYBODY};
 
 /// The tags of an object that may be rules.
 #[derive(Debug, Default)]
@@ -129,16 +129,18 @@ impl<'t> RuleTags<'t> {
         }
     }
 
-    /// The directions of travel that exist for some vehicle at some time, if rules of one-way traffic depend on vehicle or time. `None`:
-    /// they do not.
-    pub(in crate::osm::facts) fn oneway(&self, implied: bool) -> Option<Oneway> {
+    /// The directions of travel that exist for some vehicle of `those` classes at some time, if rules of one-way traffic depend on vehicle
+    /// or time. `None`: they do not.
+    pub(in crate::osm::facts) fn oneway(&self, implied: bool, those: impl Fn(&Class) -> bool) -> Option<Oneway> {
         if !self.has_oneway_rules() {
             return None;
         }
         let closed = [Direction::Forward, Direction::Backward].map(|side| {
             let group = self.group(side, implied);
             let all = Classes::builtin().all();
-            all.iter().all(|class| closed_to(&group, &Subject { vehicle: None, class, at: At::Always }))
+            all.iter()
+                .filter(|class| those(class))
+                .all(|class| closed_to(&group, &Subject { vehicle: None, class, at: At::Always }))
         });
         Some(match closed {
             [false, true] => Oneway::Forward,
