@@ -261,5 +261,6 @@ fn a_refused_request_is_one_plain_line_on_standard_error() {
         assert!(line.contains(&format!(": {status} ")) && line.len() < 1000, "{line}");
     }
     assert!(refused[8].starts_with("GET /api/region: 421 Not for this server: ") && refused[9].starts_with("BREW "));
-    assert_eq!(said.lines().count(), refused.len() + 1, "the requests that were answered say nothing: {said}");
+    // How to end it, and that it has ended.
+    assert_eq!(said.lines().count(), refused.len() + 2, "the requests that were answered say nothing: {said}");
 }
