@@ -461,7 +461,12 @@ impl Wander<'_, '_> {
             }
             let again = used.last() == Some(&way) && way == resolver.way(last);
             let new = self.via.contains(&way) && !used.contains(&way);
-            let strays = !self.via.contains(&way) && stray < MOST_STRAY && onward.goes_on(last, next);
+            // The rest of a road goes on from the last edge, or leads to a way that goes on from it.
+            let leads = || {
+                let after = resolver.leaving_at(network.edges[next as usize].to_node).iter();
+                after.into_iter().any(|&edge| self.via.contains(&resolver.way(edge)) && onward.goes_on(next, edge))
+            };
+            let strays = !self.via.contains(&way) && stray < MOST_STRAY && (onward.goes_on(last, next) || leads());
             if again || new || strays {
                 used.extend(new.then_some(way));
                 path.push(next);
