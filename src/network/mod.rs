@@ -44,9 +44,7 @@ pub use build::{build, build_with};
 pub use cell::Cell;
 pub use compare::Differences;
 pub use crossings::Crossings;
-#[cfg(feature = "serve")]
-pub(crate) use geometry::length_m;
-pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
+pub(crate) use geometry::{EARTH_RADIUS_M, length_m, offset_m};
 pub use ground::{Division, Ground};
 pub use movements::{Movement, MovementKind, Movements};
 pub use passages::{Passage, PassageKind};

@@ -347,7 +347,8 @@ fn split_road(tags: &str) -> AsciiMap {
 #[test]
 fn a_member_beyond_a_split_stands_for_the_rest_of_its_road() {
     let named = "name=Long_Road";
-    let table: [(&[i64], &[i64], &str, &str, &str); 6] = [
+    type Case = (&'static [i64], &'static [i64], &'static str, &'static str, &'static str);
+    let table: [Case; 6] = [
         (&[1], &[3], "no_left_turn", named, "BCD"),
         (&[1], &[3], "only_left_turn", named, "BCB BCE BCF"),
         (&[3], &[1], "no_right_turn", named, "DCB"),
@@ -381,7 +382,8 @@ fn an_only_that_has_no_place_is_counted() {
 #[test]
 fn missing_members_are_found_or_all_meant() {
     let nowhere = || Via::Nodes(Vec::new());
-    let table: [(&[i64], Via, &[i64], &str, &str); 8] = [
+    type Case = (&'static [i64], Via, &'static [i64], &'static str, &'static str);
+    let table: [Case; 8] = [
         (&[1], nowhere(), &[3], "no_left_turn", "ABD"),
         (&[1], nowhere(), &[3], "only_left_turn", "ABA ABC ABE"),
         (&[1], at('B'), &[], "no_left_turn", "ABD"),

@@ -148,7 +148,7 @@ fn legal(k: u32) -> Legal {
         hgv: permission(k / 5),
         motor_vehicle: permission(k / 7),
         rules: (k % 11 == 3)
-            .then(|| "forward\nhgv:conditional=no @ (22:00-06:00)\nmaxaxles=4\n\nforward\nhgv=no")
+            .then_some("forward\nhgv:conditional=no @ (22:00-06:00)\nmaxaxles=4\n\nforward\nhgv=no")
             .and_then(RuleSet::from_text),
     }
 }

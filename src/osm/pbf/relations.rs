@@ -277,7 +277,8 @@ mod tests {
 
     #[test]
     fn members_are_understood_in_other_spellings_and_places() {
-        let table: [(&str, &[(MemberType, i64, &str)], Option<&str>); 15] = [
+        type Case = (&'static str, &'static [(MemberType, i64, &'static str)], Option<&'static str>);
+        let table: [Case; 15] = [
             ("no_left_turn", &[(WAY, 1, "from"), (NODE, 5, "via"), (WAY, 2, "to")], Some("1 > @5 > 2")),
             ("no_left_turn", &[(WAY, 2, "To"), (NODE, 5, "VIA"), (WAY, 1, " From ")], Some("1 > @5 > 2")),
             ("no_entry", &[(WAY, 1, "from"), (WAY, 3, "from"), (NODE, 5, "via"), (WAY, 2, "to")], Some("1,3 > @5 > 2")),

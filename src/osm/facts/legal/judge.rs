@@ -44,7 +44,7 @@ enum Chain {
 }
 
 impl Chain {
-    fn key<'r>(self, rule: &'r Rule) -> Option<&'r str> {
+    fn key(self, rule: &Rule) -> Option<&str> {
         match (self, &rule.about) {
             (Self::Access, About::Access(key)) | (Self::Oneway, About::Oneway(key)) => Some(key),
             _ => None,

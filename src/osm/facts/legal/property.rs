@@ -107,11 +107,10 @@ impl Property {
     pub(crate) fn greatest(self) -> f32 {
         match self {
             Self::Height => 15.0,
-            Self::Length | Self::TrailerLength => 150.0,
+            Self::Length | Self::TrailerLength | Self::GroupLoad(_) => 150.0,
             Self::Width => 30.0,
             Self::Weight | Self::UnladenWeight | Self::TrailerWeight => 500.0,
             Self::AxleLoad => 60.0,
-            Self::GroupLoad(_) => 150.0,
             Self::Axles | Self::Trailers => 100.0,
         }
     }
