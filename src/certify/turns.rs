@@ -246,20 +246,7 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
     let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
-    let barred = |v: &Verdict| {
-        matches!(
-            v,
-            Verdict::Forbidden(_)
-                | Verdict::Unknown(
-                    UnknownReason::Limit
-                        | UnknownReason::Failed
-                        | UnknownReason::TookTooLong
-                        | UnknownReason::Time
-                        | UnknownReason::Rule
-                )
-        )
-    };
-    let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);
+    let arcs = || turn.through.iter().map(|&arc| of(arc)).find(|verdict| verdict.bars_passage());
     first(|v| matches!(v, Verdict::Forbidden(_)))
         .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))
         .or_else(|| first(|v| matches!(v, Verdict::Unknown(_))))

@@ -154,9 +154,7 @@ impl SetClaim<'_> {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
         // A machine that failed claims nothing, nor does work that took too long.
-        let nothing =
-            matches!(row.certificate.verdict, Verdict::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong));
-        if nothing && !row.certificate.has_numbers() {
+        if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
             return Outcome::Confirmed;
         }
         let expected = expected((self.network, edge), self.vehicle, unknown, row);

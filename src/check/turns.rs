@@ -100,20 +100,7 @@ impl TurnsClaim<'_> {
         if worse != Verdict::Safe {
             return Some(worse);
         }
-        let stops = |verdict: &Verdict| {
-            matches!(
-                verdict,
-                Verdict::Forbidden(_)
-                    | Verdict::Unknown(
-                        UnknownReason::Limit
-                            | UnknownReason::Failed
-                            | UnknownReason::TookTooLong
-                            | UnknownReason::Time
-                            | UnknownReason::Rule
-                    )
-            )
-        };
-        turn.through.iter().map(|&arc| of(arc)).find(stops)
+        turn.through.iter().map(|&arc| of(arc)).find(|verdict| verdict.bars_passage())
     }
 
     /// The outcome of a row, and the kilometres that were swept for it.
@@ -125,9 +112,7 @@ impl TurnsClaim<'_> {
             return (Outcome::Malformed(wrong), 0.0);
         }
         // A machine that failed claims nothing, nor does work that took too long.
-        let nothing =
-            matches!(row.certificate.verdict, Verdict::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong));
-        if nothing && !row.certificate.has_numbers() {
+        if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
             return (Outcome::Confirmed, 0.0);
         }
         let made = match self.barred(turn) {

@@ -18,6 +18,32 @@ pub enum Verdict {
     Unknown(UnknownReason),
 }
 
+impl Verdict {
+    /// Whether nothing may lead over the edge, not even a turn or passage with a certificate of its own: the vehicle is forbidden there, or
+    /// that is not known.
+    #[must_use]
+    pub fn bars_passage(self) -> bool {
+        match self {
+            Self::Forbidden(_) => true,
+            Self::Unknown(reason) => match reason {
+                UnknownReason::Limit
+                | UnknownReason::Failed
+                | UnknownReason::TookTooLong
+                | UnknownReason::Time
+                | UnknownReason::Rule => true,
+                UnknownReason::Width | UnknownReason::Geometry | UnknownReason::Cut => false,
+            },
+            Self::Safe | Self::Unsafe(_) => false,
+        }
+    }
+
+    /// Whether the work behind it was not done, so that it claims nothing.
+    #[must_use]
+    pub fn claims_nothing(self) -> bool {
+        matches!(self, Self::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong))
+    }
+}
+
 /// Why the certificate does not hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnsafeReason {

@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Tags;
+use super::legal::OTHER_VEHICLES;
 use super::limits::clauses;
 
 /// The movement that a sign names. The relation's members determine its edges.
@@ -60,46 +61,8 @@ pub enum NoRule {
     OnRed,
 }
 
-/// Keys `restriction:…` that do not concern heavy goods vehicles. A word that is not here may mean them.
-const OTHERS: [&str; 37] = [
-    "agricultural",
-    "atv",
-    "auto_rickshaw",
-    "bicycle",
-    "bus",
-    "caravan",
-    "cargo_bike",
-    "carpool",
-    "carriage",
-    "coach",
-    "cycle_rickshaw",
-    "electric_bicycle",
-    "emergency",
-    "foot",
-    "golf_cart",
-    "hazmat",
-    "horse",
-    "hov",
-    "inline_skates",
-    "kick_scooter",
-    "light_rail",
-    "minibus",
-    "mofa",
-    "moped",
-    "motorcar",
-    "motorcycle",
-    "motorhome",
-    "psv",
-    "share_taxi",
-    "ski",
-    "small_electric_vehicle",
-    "snowmobile",
-    "speed_pedelec",
-    "taxi",
-    "tourist_bus",
-    "tram",
-    "trolleybus",
-];
+/// Vehicles beside those that netcert does not have whose restrictions do not concern heavy goods vehicles. A word that is neither may mean them.
+const OTHERS: [&str; 7] = ["auto_rickshaw", "bus", "cargo_bike", "coach", "psv", "tourist_bus", "trolleybus"];
 /// Values of `except` that exempt heavy goods vehicles.
 const EXEMPTING: [&str; 3] = ["vehicle", "motor_vehicle", "hgv"];
 /// Older tags that limit a restriction to certain times.
@@ -168,7 +131,7 @@ impl Key {
         };
         let whom = match vehicle {
             "" => Whom::All,
-            vehicle if OTHERS.contains(&vehicle) => Whom::Others,
+            vehicle if OTHER_VEHICLES.contains(&vehicle) || OTHERS.contains(&vehicle) => Whom::Others,
             _ => Whom::HeavyGoods,
         };
         Some(Self { whom, conditional })
@@ -335,7 +298,7 @@ mod tests {
             let key = format!("restriction:{vehicle}");
             assert_eq!(rules(&[IS, (&key, "no_left_turn")]).unwrap(), ["no_left_turn"], "{vehicle}");
         }
-        for vehicle in OTHERS {
+        for vehicle in OTHERS.into_iter().chain(OTHER_VEHICLES) {
             let key = format!("restriction:{vehicle}");
             assert_eq!(rules(&[IS, (&key, "no_left_turn")]), Err(NoRule::OtherVehicles), "{vehicle}");
         }

@@ -43,7 +43,7 @@ pub(crate) struct Rule {
 }
 
 /// Keys of vehicles that netcert does not have. Rules for them are none of its vehicles'.
-const OTHER_VEHICLES: [&str; 37] = [
+pub(in crate::osm::facts) const OTHER_VEHICLES: [&str; 37] = [
     "agricultural",
     "atv",
     "bicycle",
