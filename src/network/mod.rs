@@ -217,6 +217,17 @@ impl Network {
         of_edge
     }
 
+    /// Whether an edge runs against the traffic of its one-way road, such as that of buses that may. No width is known there, and the road
+    /// is no two-way road for it.
+    #[must_use]
+    pub fn is_against_traffic(&self, edge: &Edge) -> bool {
+        match self.road(edge).oneway {
+            Oneway::No => false,
+            Oneway::Forward => edge.direction == Direction::Backward,
+            Oneway::Backward => edge.direction == Direction::Forward,
+        }
+    }
+
     /// The road of an edge.
     #[must_use]
     pub fn road(&self, edge: &Edge) -> &Road {

@@ -179,7 +179,8 @@ impl<'n> Junction<'n> {
             self.options.straight_limit_deg
         };
         let goes = deflection_deg <= limit_deg || (self.two_ends && self.bends_back(a.edge, b.edge) <= limit_deg);
-        (goes && !self.turns_sharply(a, b)).then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
+        (goes && !self.turns_sharply(a, b) && !self.meets_traffic(a, b))
+            .then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
     }
 
     /// The heading of a hairpin with its apex at the node turns by more than the limit over chords, but not at the node
@@ -195,6 +196,7 @@ impl<'n> Junction<'n> {
         let plausible = deflection_deg <= limit_deg
             && !reverse(self.network, a.edge, b.edge)
             && !self.onto_or_off_a_ring(a, b)
+            && !self.meets_traffic(a, b)
             && !self.turns_sharply(a, b);
         plausible.then(|| self.candidate(a, b, deflection_deg))
     }
@@ -229,6 +231,13 @@ impl<'n> Junction<'n> {
     fn turns_sharply(&self, a: &End, b: &End) -> bool {
         let corner_deg = || self.network.deflection_over_deg(self.edge(a.edge), self.edge(b.edge), REACH_M);
         !self.road(a.edge).roundabout && is_sharp(corner_deg())
+    }
+
+    /// Whether one of the two runs against the traffic of a one-way road, and the other does not. No road goes on there: for everybody but
+    /// buses it is as it would be without them.
+    fn meets_traffic(&self, a: &End, b: &End) -> bool {
+        let against = |end: &End| self.network.is_against_traffic(self.edge(end.edge));
+        against(a) != against(b)
     }
 
     fn candidate(&self, a: &End, b: &End, cost_deg: f64) -> Candidate {

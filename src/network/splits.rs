@@ -4,7 +4,7 @@
 //! is the middle of one. Both carriageways must exist. A road that merely becomes one-way is no split, because its lane
 //! may really end.
 
-use super::{Network, reverse};
+use super::{Edge, Network, reverse};
 use crate::osm::facts::Oneway;
 
 /// Two-way edges at whose end or start the road parts.
@@ -45,7 +45,9 @@ impl Splits {
     }
 
     fn look_at(&mut self, network: &Network, from: u32, to: u32) {
-        let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
+        // Buses that come against a one-way road make it no second carriageway.
+        let with_traffic = |edge: &&Edge| !network.is_against_traffic(edge);
+        let road = |edge: u32| network.edges.get(edge as usize).filter(with_traffic).map(|edge| network.road(edge));
         let (Some(a), Some(b)) = (road(from), road(to)) else { return };
         if a.roundabout || b.roundabout {
             return;

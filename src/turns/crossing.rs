@@ -131,7 +131,8 @@ pub(super) fn carriageways(network: &Network, edges: &[u32], frame: Frame, param
 fn mouths<'a>(network: &'a Network, node: i64, own: &[u32], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
     let own: Vec<&Edge> = own.iter().filter_map(|&edge| network.edges.get(edge as usize)).collect();
     let mut pieces: Vec<&Edge> = Vec::new();
-    for edge in network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize)) {
+    let edges = network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize));
+    for edge in edges.filter(|edge| !network.is_against_traffic(edge)) {
         if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {
             pieces.push(edge);
         }

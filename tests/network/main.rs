@@ -8,6 +8,7 @@ mod bends;
 mod cells;
 mod complexes;
 mod conditions;
+mod contraflow;
 mod corners;
 mod corridor_extracts;
 mod demo_region;
