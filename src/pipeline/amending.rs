@@ -5,10 +5,10 @@ use std::time::Instant;
 use super::Summary;
 use super::again::{Again, StoredSet};
 use super::certifying::without_corridor;
-use super::reuse::{Certificates, Stored, same_turn};
+use super::reuse::{Certificates, Stored, is_undone, same_turn};
 use crate::account::AccountRow;
 use crate::certify::{NearNodes, Outcome, Touched, TurnOutcome};
-use crate::network::{Differences, Portion};
+use crate::network::{Differences, Network, Portion};
 use crate::reporter::Reporter;
 use crate::rows::EdgeMeasure;
 use crate::settings::Settings;
@@ -48,8 +48,7 @@ pub(super) fn amendment<'a>(
     let mut touched = Touched::find(network, turns, &differences.edges, &differences.nodes);
     let others = (0_u32..).zip(turns_before.iter().zip(turns));
     touched.turns.extend(others.filter(|(_, (old, new))| !same_turn(&differences, old, new)).map(|(index, _)| index));
-    touched.turns.sort_unstable();
-    touched.turns.dedup();
+    add_undone(&mut touched, network, &known, sets);
     let most = MOST_TOUCHED.max((network.strokes.len() + turns.len()) / ONE_IN);
     if touched.strokes.len() + touched.turns.len() > most {
         return None;
@@ -71,6 +70,24 @@ pub(super) fn amendment<'a>(
     summary.stage("certificates", clock, certificates as u64, "certificates");
     let sets = made.into_iter().map(|made| made.set).collect();
     Some((Amendment { before, turns_before, after, turns, measures, junctions, sets }, account))
+}
+
+/// Adds the strokes and turns whose certificates claim nothing, because they took too long or a machine failed.
+/// `measures`: by edge.
+fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMeasure)], sets: &[StoredSet]) {
+    let of_edges = network.strokes_of_edges();
+    for set in sets {
+        let edges = set.edges.iter().zip(measures).zip(&of_edges);
+        touched.strokes.extend(
+            edges.filter(|((verdict, (_, measure)), _)| is_undone(**verdict, measure)).map(|(_, stroke)| *stroke),
+        );
+        let turns = (0_u32..).zip(set.turns.iter().flatten());
+        touched.turns.extend(turns.filter(|(_, verdict)| verdict.claims_nothing()).map(|(turn, _)| turn));
+    }
+    for touched in [&mut touched.strokes, &mut touched.turns] {
+        touched.sort_unstable();
+        touched.dedup();
+    }
 }
 
 /// The account of all certificates, those that stand and those that were made again. `measures`: by edge.

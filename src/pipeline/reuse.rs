@@ -18,6 +18,7 @@ use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{self, CertifiedSet, Database, KeptPlans};
 use crate::turns::{JunctionArea, TurnFacts, turn_facts};
+use crate::verdict::Verdict;
 
 use super::again::StoredSet;
 use super::identity;
@@ -145,6 +146,12 @@ impl<'a> Stored<'a> {
     }
 }
 
+/// Whether the certificate of an edge was not made, because it took too long or a machine failed. A forbidden edge keeps its verdict then,
+/// and lacks its measures.
+pub(super) fn is_undone(verdict: Verdict, measure: &EdgeMeasure) -> bool {
+    verdict.claims_nothing() || (matches!(verdict, Verdict::Forbidden(_)) && measure.centreline_deviation_m.is_none())
+}
+
 impl Earlier {
     /// Finds what stands in a newer network. `None` if the earlier database lacks certificates, or has other edges than the network that was
     /// read for it.
@@ -172,10 +179,14 @@ impl Earlier {
         Ok(Some(Self { differences, measures, sets, facts, junctions, touched }))
     }
 
-    /// The strokes that stand, as indices into the new network.
+    /// The strokes that stand, as indices into the new network. A stroke whose certificates claim nothing does not.
     pub(super) fn strokes(&self, network: &Network) -> impl Iterator<Item = u32> {
         let touched: FxHashSet<u32> = self.touched.strokes.iter().copied().collect();
-        (0_u32..).take(network.strokes.len()).filter(move |stroke| !touched.contains(stroke))
+        let made = |stroke: &u32| {
+            self.edges(network, *stroke)
+                .all(|(_, measure, kept)| !kept.iter().any(|kept| is_undone(kept.verdict(), &measure)))
+        };
+        (0_u32..).take(network.strokes.len()).filter(move |stroke| !touched.contains(stroke) && made(stroke))
     }
 
     fn older(&self, edge: u32) -> Option<u32> {
@@ -219,7 +230,10 @@ impl Earlier {
                 let plan = set.turn_plans.at(older, index);
                 Some((set.turns.get(older as usize)?, plan))
             };
-            stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten().map(|kept| (index, kept))
+            let kept = stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten();
+            // What was not done is done now.
+            let made = |kept: &Vec<(&store::Kept, _)>| !kept.iter().any(|(kept, _)| kept.verdict().claims_nothing());
+            kept.filter(made).map(|kept| (index, kept))
         })
     }
 

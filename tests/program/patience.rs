@@ -4,6 +4,7 @@ use std::io::Read as _;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::support::demo::demo;
 use crate::support::program::Place;
 
 #[test]
@@ -16,6 +17,7 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
     // It claims nothing, so nothing is refuted.
     place.netcert("verify --db demo.gpkg").succeeds();
     assert_eq!(place.files(), ["demo.gpkg"]);
+    let hurried = place.read("demo.gpkg");
     place.netcert("certify --vehicle AU-SEMI19").succeeds();
     let patient = Place::empty();
     patient.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
@@ -25,6 +27,11 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
         (edges.collect::<Vec<_>>(), turns)
     };
     assert!(rows(&place) == rows(&patient), "certified again, they are those of a patient run");
+    // An update with the same data does what was not done, too.
+    let later = Place::empty().file("demo.gpkg", hurried);
+    let extract = demo().display().to_string();
+    later.netcert(&format!("update --db demo.gpkg --new-extract {extract}")).succeeds();
+    assert!(rows(&later) == rows(&patient), "updated, they are those of a patient run");
 }
 
 #[cfg(unix)]
