@@ -6,6 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use jiff::civil::DateTime;
+
 use crate::explain::{self, Explanation, TurnExplanation};
 use crate::osm::facts::Policy;
 use crate::route::{Driver, Measure, NoDriver, Peer, Planner, Roads, Speeds, SpeedsError};
@@ -137,6 +139,15 @@ impl Region {
     /// There is no file at `path`, another program made it, or it is damaged.
     pub fn open(path: &Path) -> Result<Self, RegionError> {
         Ok(Self { path: path.to_owned(), database: Database::open(path)?, roads: None })
+    }
+
+    /// From now on, answers give the verdicts at this time, which is local time of the place. Without it, a road that is closed to the
+    /// vehicle at some times is `unknown: time`.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn set_time(&mut self, time: DateTime) -> Result<(), RegionError> {
+        Ok(self.database.set_time(time)?)
     }
 
     /// The sets of certificates: one for each vehicle and policy.

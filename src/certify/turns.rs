@@ -237,7 +237,7 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
 
 /// The verdict of a turn without a certificate: the turn is forbidden, or one of its edges cannot be used. The edges that a
 /// passage leads over need no certificate of their own, because its certificate covers them. They must only be open to the
-/// vehicle.
+/// vehicle. Edges that are closed at some times only bar no turn: see [`only_at_times`].
 fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
     if turn.movement.forbidden.is_some() {
         return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
@@ -246,11 +246,40 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
     let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
-    let arcs = || turn.through.iter().map(|&arc| of(arc)).find(|verdict| verdict.bars_passage());
+    let arcs =
+        || turn.through.iter().map(|&arc| of_arc(job, of(arc), arc, vehicle)).find(|v| v.bars_passage() && *v != TIME);
     first(|v| matches!(v, Verdict::Forbidden(_)))
         .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))
-        .or_else(|| first(|v| matches!(v, Verdict::Unknown(_))))
+        .or_else(|| first(|v| matches!(v, Verdict::Unknown(_)) && *v != TIME))
         .or_else(arcs)
+}
+
+/// What is closed at some times.
+const TIME: Verdict = Verdict::Unknown(UnknownReason::Time);
+
+/// The verdict of an edge that a passage leads over. Room does not matter there, so a rule counts behind it.
+fn of_arc(job: &TurnJob<'_>, verdict: Verdict, arc: u32, vehicle: usize) -> Verdict {
+    if verdict.bars_passage() {
+        return verdict;
+    }
+    let legal = job.network.edges.get(arc as usize).map(|edge| job.network.legal(edge));
+    let vehicle = job.models.get(vehicle).map(|model| &model.vehicle);
+    legal.zip(vehicle).and_then(|(legal, vehicle)| legal.forbids(vehicle)).unwrap_or(verdict)
+}
+
+/// Whether one of a turn's edges is closed to the vehicle at some times. The turn is then no better than `unknown: time`.
+fn only_at_times(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> bool {
+    let of = |edge: u32| job.edges.get(vehicle).and_then(|verdicts| verdicts.get(edge as usize)).copied();
+    let ends = [turn.movement.from, turn.movement.to].into_iter().any(|edge| of(edge) == Some(TIME));
+    ends || turn.through.iter().any(|&arc| of(arc).is_some_and(|verdict| of_arc(job, verdict, arc, vehicle) == TIME))
+}
+
+/// The certificate of a turn with its edges: where one is closed at some times, time replaces `safe`.
+fn at_its_times(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize, mut made: TurnCertificate) -> TurnCertificate {
+    if made.conclusion.verdict == Verdict::Safe && only_at_times(job, turn, vehicle) {
+        made.conclusion.verdict = TIME;
+    }
+    made
 }
 
 /// Whether a turn was laid out, and no plan fits.
@@ -343,7 +372,7 @@ fn plan_as_on(
                 try_path((wide, &grounds), planned, &job.models[v], how, &mut best);
             }
             if best.as_ref().is_some_and(|best| best.result.safe()) {
-                better.push((v, certificate(made.turn, best)));
+                better.push((v, at_its_times(job, turn, v, certificate(made.turn, best))));
             }
         }
     }
@@ -399,7 +428,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
                 laid_out = true;
                 let models: Vec<&Model> = live.iter().map(|&v| &job.models[v]).collect();
                 for (&v, best) in live.iter().zip(best_planned(&made, &models, &job.settings.stet)) {
-                    out[v] = certificate(index, best);
+                    out[v] = at_its_times(job, turn, v, certificate(index, best));
                     let lacks = out[v].conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
                     if lacks && job.settings.needs == Needs::All {
                         let case =

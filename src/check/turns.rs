@@ -83,24 +83,50 @@ impl TurnsClaim<'_> {
     }
 
     /// The verdict of a turn that needs no corridor, because a restriction forbids it or one of its edges is not safe. The edges
-    /// that a passage leads over need only be lawful.
+    /// that a passage leads over need only be lawful. Edges that are closed at some times bar no turn.
     fn barred(&self, turn: &TurnFacts) -> Option<Verdict> {
         if turn.movement.forbidden.is_some() {
             return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
         }
-        let of = |edge: u32| self.edges.get(&edge).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
-        let ends = [of(turn.movement.from), of(turn.movement.to)];
+        let ends = self.ends(turn);
         let rank = |verdict: &Verdict| match verdict {
             Verdict::Forbidden(_) => 0,
             Verdict::Unsafe(_) => 1,
+            Verdict::Unknown(UnknownReason::Time) | Verdict::Safe => 3,
             Verdict::Unknown(_) => 2,
-            Verdict::Safe => 3,
         };
         let worse = if rank(&ends[1]) < rank(&ends[0]) { ends[1] } else { ends[0] };
-        if worse != Verdict::Safe {
+        if rank(&worse) < 3 {
             return Some(worse);
         }
-        turn.through.iter().map(|&arc| of(arc)).find(|verdict| verdict.bars_passage())
+        self.passed(turn).find(|verdict| verdict.bars_passage() && *verdict != Verdict::Unknown(UnknownReason::Time))
+    }
+
+    /// The verdict of a turn with room enough.
+    fn at_its_times(&self, turn: &TurnFacts) -> Verdict {
+        let time = Verdict::Unknown(UnknownReason::Time);
+        if self.ends(turn).contains(&time) || self.passed(turn).any(|verdict| verdict == time) {
+            time
+        } else {
+            Verdict::Safe
+        }
+    }
+
+    fn of(&self, edge: u32) -> Verdict {
+        self.edges.get(&edge).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry))
+    }
+
+    fn ends(&self, turn: &TurnFacts) -> [Verdict; 2] {
+        [self.of(turn.movement.from), self.of(turn.movement.to)]
+    }
+
+    /// What stands against driving over each edge that a passage leads over, room aside.
+    fn passed(&self, turn: &TurnFacts) -> impl Iterator<Item = Verdict> {
+        turn.through.iter().map(|&arc| {
+            let (known, edge) = (self.of(arc), self.network.edges.get(arc as usize));
+            let legal = || edge.and_then(|edge| self.network.legal(edge).forbids(self.vehicle));
+            if known.bars_passage() { known } else { legal().unwrap_or(known) }
+        })
     }
 
     /// The outcome of a row, and the kilometres that were swept for it.
@@ -121,7 +147,7 @@ impl TurnsClaim<'_> {
         };
         match made {
             Err(expected) => (without_corridor(&row.certificate, expected), 0.0),
-            Ok(made) => self.with_corridors(chain, row, &made),
+            Ok(made) => self.with_corridors(chain, row, (&made, self.at_its_times(turn))),
         }
     }
 
@@ -156,7 +182,8 @@ impl TurnsClaim<'_> {
         turn_on(self.network, (turn.movement, &turn.through), &line, self.policy, self.params, reach)
     }
 
-    fn with_corridors(&self, chain: &Chain, row: &TurnRow, made: &TurnCorridors) -> (Outcome, f64) {
+    /// `safe` is the verdict that the row has if there is room.
+    fn with_corridors(&self, chain: &Chain, row: &TurnRow, (made, safe): (&TurnCorridors, Verdict)) -> (Outcome, f64) {
         let said = &row.certificate;
         let Some(code) = row.path_no else {
             let told = if said.has_numbers() {
@@ -185,7 +212,7 @@ impl TurnsClaim<'_> {
         };
         let claims: Vec<_> = said.claim(&path.counted, path.corridor.spacing_m).into_iter().collect();
         let mut found: Vec<Finding> = subject.check(&claims).into_iter().flatten().collect();
-        let follows = said.follows(Verdict::Safe);
+        let follows = said.follows(safe);
         if follows != said.verdict {
             found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use jiff::civil::DateTime;
 use netcert::export::formats::{self, Layer, Options, TARGETS};
 use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
 use netcert::osm::facts::{Policy, WidthSource};
@@ -15,7 +16,7 @@ use super::on_demand::{self, Wanted};
 use super::output::{grouped, printable, results};
 use super::relative::RelativeArgs;
 use super::stop::when_stopped;
-use super::values::{metres, word};
+use super::values::{local_time, metres, word};
 
 /// Write the roads and turns that a vehicle may use in the format of a routing engine or map program.
 ///
@@ -62,6 +63,10 @@ pub(crate) struct Export {
     /// Permit only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
+    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
+    /// as `unknown: time`.
+    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
+    at: Option<DateTime>,
     /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
     /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
@@ -123,6 +128,7 @@ impl Export {
             vehicle: self.vehicle.clone(),
             policy: set.policy,
             rule: PermitPolicy { min_rsc_m: self.min_rsc, min_width_source: self.width_source },
+            at: self.at,
             extract: self.extract.clone(),
             relative_to: self.relative.relative_to.clone(),
         };

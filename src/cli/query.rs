@@ -5,6 +5,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
+use jiff::civil::DateTime;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, Relative};
@@ -22,7 +23,7 @@ use super::output::{km, results};
 use super::relative::{self, RelativeArgs};
 use super::rows::{Format, Head, Sink};
 use super::turn_rows;
-use super::values::{metres, signed_metres, word};
+use super::values::{local_time, metres, signed_metres, word};
 
 /// List which roads a vehicle may use, and why it may not use the others.
 ///
@@ -95,6 +96,10 @@ pub(crate) struct Query {
     /// Show only rows on which the vehicle needs no more room than the vehicle of --relative-to.
     #[arg(long, requires = "relative_to")]
     as_reference: bool,
+    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
+    /// as `unknown: time`.
+    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
+    at: Option<DateTime>,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -119,7 +124,10 @@ impl Query {
         if let Some(id) = &self.relative.relative_to {
             let (opened, reference) = on_demand::reference(session, (&path, database), &wanted, (&set, id))?;
             database = opened;
-            compared = Some(ReferenceReader::open(&path, reference)?);
+            compared = Some(ReferenceReader::open(&path, reference, self.at)?);
+        }
+        if let Some(time) = self.at {
+            database.set_time(time)?;
         }
         self.needs_are_known(&set)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
@@ -198,6 +206,7 @@ impl Query {
 
     fn head(&self, policy: Policy, mut scope: String) -> Head {
         let relative_to = self.relative.relative_to.clone();
+        scope += &self.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
         scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
         Head { vehicle: self.vehicle.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
     }

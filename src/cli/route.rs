@@ -8,12 +8,12 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use netcert::certificate;
 use netcert::corridor::FileCorridor;
-use netcert::network::{DESTINATION_VALUES, Network, PassageKind};
+use netcert::network::{Network, PassageKind, destination_words};
 use netcert::picture;
 use netcert::region::Region;
 use netcert::route::{
-    self, Answer, Comparison, Conditional, Measure, PartKind, PartResult, Peer, Planner, Position, Question,
-    Route as Found,
+    self, Answer, Comparison, Conditional, LimitedStretch, Measure, PartKind, PartResult, Peer, Planner, Position,
+    Question, Route as Found,
 };
 use netcert::stop::Stop;
 use netcert::words::Named;
@@ -137,6 +137,7 @@ impl Route {
         match self.format {
             Format::Json => {
                 let mut json = route::json(network, model, &answer);
+                json["at"] = inputs.at.map(|time| time.to_string()).into();
                 compared.iter().for_each(|compared| compared.add_to_json(&mut json));
                 writeln!(out, "{json:#}")?;
             }
@@ -164,7 +165,11 @@ impl Route {
     fn peer(&self, inputs: &RoutingInputs) -> anyhow::Result<Option<Peer>> {
         let Some(reference) = &self.relative.relative_to else { return Ok(None) };
         let vehicle = &inputs.driver.model.vehicle.id;
-        Ok(Some(Region::open(&inputs.path)?.peer(vehicle, inputs.settings().policy, reference)?))
+        let mut region = Region::open(&inputs.path)?;
+        if let Some(time) = inputs.at {
+            region.set_time(time)?;
+        }
+        Ok(Some(region.peer(vehicle, inputs.settings().policy, reference)?))
     }
 
     fn write_files(&self, inputs: &RoutingInputs, answer: &Answer, session: &Session) -> anyhow::Result<()> {
@@ -234,7 +239,7 @@ fn tell(
         writeln!(out)?;
         parts(out, network, found)?;
         writeln!(out)?;
-        destinations(out, inputs, found)?;
+        limited(out, inputs, found)?;
     }
     if answer.routes.is_empty() {
         writeln!(out, "{} {}: no certified route\n", vehicle.id, vehicle.name)?;
@@ -256,9 +261,10 @@ fn tell(
         writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
     }
     let policy = inputs.settings().policy.name();
+    let time = inputs.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
-         them); no permit. Times are by class of road and tagged limits."
+         them); no permit. Times are by class of road and tagged limits.{time}"
     );
     writeln!(out, "{}", wrapped(&scope, ""))
 }
@@ -290,7 +296,7 @@ fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &C
     numbers(out, inputs, found)?;
     writeln!(out)?;
     parts(out, network, found)?;
-    destinations(out, inputs, found)?;
+    limited(out, inputs, found)?;
     let told = "The numbers hold only if all of this is so on site. Nothing here says that it is: `netcert route --sheet` writes it \
                 down to be checked, and `netcert evidence add` takes the measurements.";
     writeln!(out, "\n{}\n", wrapped(told, "  "))
@@ -368,20 +374,22 @@ fn how(network: &Network, at: PartKind) -> &'static str {
     }
 }
 
-/// Says where the route uses a road that is open to its destination only.
-fn destinations(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {
-    let stretches = found.destination_only(&inputs.roads.network, &inputs.driver.model.vehicle);
-    for stretch in &stretches {
-        let text = format!(
-            "Only for a vehicle whose journey begins or ends there: {} from {:.2} km to {:.2} km ({} = {DESTINATION_VALUES}).",
-            printable(&stretch.title),
-            stretch.from_m / 1000.0,
-            stretch.to_m / 1000.0,
-            stretch.tag
-        );
-        writeln!(out, "{}", wrapped(&text, "  "))?;
-    }
-    if stretches.is_empty() { Ok(()) } else { writeln!(out) }
+/// Says where the route uses roads that are open to their destination only, or at some times only.
+fn limited(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {
+    let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
+    let tell = |out: &mut dyn Write, what: &str, stretches: &[LimitedStretch]| {
+        stretches.iter().try_for_each(|stretch| {
+            let (road, tag) = (printable(&stretch.title), printable(&destination_words(&stretch.tag)));
+            let (from_km, to_km) = (stretch.from_m / 1000.0, stretch.to_m / 1000.0);
+            let text = format!("{what}: {road} from {from_km:.2} km to {to_km:.2} km ({tag}).");
+            writeln!(out, "{}", wrapped(&text, "  "))
+        })
+    };
+    let destinations = found.destination_only(network, vehicle);
+    let times = found.only_at_times(network, vehicle);
+    tell(out, "Only for a vehicle whose journey begins or ends there", &destinations)?;
+    tell(out, "Closed to the vehicle at other times", &times)?;
+    if destinations.is_empty() && times.is_empty() { Ok(()) } else { writeln!(out) }
 }
 
 fn blocked(
@@ -427,8 +435,9 @@ fn blocked(
         let Some(tag) = obstacle.tag(network, vehicle) else { continue };
         let road = printable(&route::title(network, obstacle.at));
         let text = format!(
-            "{road} is open only to a vehicle whose journey begins or ends there ({tag} = {DESTINATION_VALUES}), and the way passes \
-             through it. No other way is certified."
+            "{road} is open only to a vehicle whose journey begins or ends there ({}), and the way passes through it. No other way is \
+             certified.",
+            printable(&destination_words(&tag))
         );
         writeln!(out, "\n{}", wrapped(&text, "  "))?;
     }

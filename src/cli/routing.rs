@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use jiff::civil::DateTime;
 use netcert::osm::facts::Policy;
 use netcert::region::Region;
 use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
@@ -14,7 +15,7 @@ use super::Session;
 use super::database::DatabaseArgs;
 use super::on_demand::{self, Wanted};
 use super::relative::RelativeArgs;
-use super::values::word;
+use super::values::{local_time, word};
 
 #[derive(Args)]
 pub(crate) struct RoutingArgs {
@@ -31,6 +32,10 @@ pub(crate) struct RoutingArgs {
     /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
+    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
+    /// as `unknown: time`.
+    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
+    at: Option<DateTime>,
 }
 
 /// The loaded network, vehicle and speeds.
@@ -39,6 +44,8 @@ pub(crate) struct RoutingInputs {
     pub(crate) roads: Arc<Roads>,
     pub(crate) driver: Arc<Driver>,
     pub(crate) speeds: Speeds,
+    /// The time of the permits. `None`: of all times together.
+    pub(crate) at: Option<DateTime>,
 }
 
 impl RoutingArgs {
@@ -55,8 +62,11 @@ impl RoutingArgs {
         let (database, set) = on_demand::certified(session, (&path, database), &wanted)?;
         database.close()?;
         let mut region = Region::open(&path)?;
+        if let Some(time) = self.at {
+            region.set_time(time)?;
+        }
         let driver = region.driver(&self.vehicle, set.policy)?;
-        Ok(RoutingInputs { path, roads: region.roads()?, driver, speeds: Speeds::builtin()? })
+        Ok(RoutingInputs { path, roads: region.roads()?, driver, speeds: Speeds::builtin()?, at: self.at })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Parses values of options: words of the library's enumerations, and numbers within bounds.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use jiff::civil::DateTime;
 use netcert::words::Named;
 
 /// A parser for the words of an enumeration. The help text lists the words.
@@ -13,6 +14,13 @@ pub(crate) fn word<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T>
 pub(crate) fn country_code(text: &str) -> Result<String, String> {
     let letters = text.len() == 2 && text.bytes().all(|b| b.is_ascii_alphabetic());
     if letters { Ok(text.to_ascii_uppercase()) } else { Err("give two letters of ISO 3166-1, such as AU".to_owned()) }
+}
+
+/// Parses a local time such as `2026-12-01T08:00`.
+pub(crate) fn local_time(text: &str) -> Result<DateTime, String> {
+    let formats = ["%Y-%m-%dT%H:%M", "%Y-%m-%dT%H:%M:%S"];
+    let time = formats.iter().find_map(|format| DateTime::strptime(format, text).ok());
+    time.ok_or_else(|| "give the local time of the place, such as 2026-12-01T08:00, without a zone".to_owned())
 }
 
 /// Parses a length from 0 to 100 metres.

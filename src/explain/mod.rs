@@ -108,7 +108,7 @@ pub struct RoadFacts {
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
     /// The tags that open the road to a destination only.
-    pub destination_tag: Option<&'static str>,
+    pub destination_tag: Option<String>,
     /// The map's line in driving direction.
     pub line: Vec<LonLat>,
 }

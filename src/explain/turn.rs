@@ -59,16 +59,25 @@ pub fn explain_turn(
     };
     stop.check()?;
     let best = made.as_ref().ok().and_then(|made| best_of(made, &[model], &settings.stet).pop().flatten());
-    let legal = [facts.movement.from, facts.movement.to]
+    let legal: Vec<Verdict> = [facts.movement.from, facts.movement.to]
         .into_iter()
         .chain(facts.through.iter().copied())
         .filter_map(|edge| network.edges.get(edge as usize))
-        .find_map(|edge| forbids(network, edge, model));
+        .filter_map(|edge| forbids(network, edge, model))
+        .collect();
+    let time = Verdict::Unknown(UnknownReason::Time);
+    let barred = legal
+        .iter()
+        .find(|verdict| matches!(verdict, Verdict::Forbidden(_)))
+        .or_else(|| legal.iter().find(|verdict| **verdict != time));
     let verdict = match (&made, &best) {
         _ if facts.movement.forbidden.is_some() => Verdict::Forbidden(ForbiddenReason::Restriction),
-        _ if legal.is_some() => legal.unwrap_or(Verdict::Safe),
-        (Err(reason), _) => Verdict::Unknown(*reason),
-        (Ok(_), best) => turn_verdict(best.as_ref().map(|(_, result)| result)),
+        (Err(reason), _) => barred.copied().unwrap_or(Verdict::Unknown(*reason)),
+        (Ok(_), best) => match (barred, turn_verdict(best.as_ref().map(|(_, result)| result))) {
+            (Some(barred), _) => *barred,
+            (None, Verdict::Safe) if legal.contains(&time) => time,
+            (None, verdict) => verdict,
+        },
     };
     let mut hints = Hints::default();
     let mut geometry = None;

@@ -5,7 +5,7 @@ use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
 use super::{Explanation, Geometry, HingePlace, Part, Place};
 use crate::corridor::{Taper, TaperCause};
-use crate::network::DESTINATION_VALUES;
+use crate::network::destination_words;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::verdict_words;
@@ -53,14 +53,13 @@ pub fn words(e: &Explanation) -> Words {
         (_, None) => Vec::new(),
     };
     reasons.extend(e.turn.as_ref().and_then(|turn| refused(&turn.refused)));
-    reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag).map(destination_only));
+    reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 
 fn destination_only(tag: &str) -> String {
-    format!(
-        "Only for vehicles whose journey begins or ends there ({tag} = {DESTINATION_VALUES}): no route passes through."
-    )
+    let tag = destination_words(tag);
+    format!("Only for vehicles whose journey begins or ends there ({tag}): no route passes through.")
 }
 
 /// The RSC, or −∞ if there is none.

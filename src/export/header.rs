@@ -108,10 +108,11 @@ impl Header {
     #[must_use]
     pub fn scope(&self) -> String {
         let p = &self.provenance;
+        let time = self.ask.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
         format!(
             "A permit holds within the stated model, widths and error bounds, for {} steered within {} m of the planned path \
              (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed \
-             where they are neither surveyed nor mapped. It is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
+             where they are neither surveyed nor mapped. It is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.{time}",
             self.ask.vehicle, p.tracking_tolerance_m
         )
     }
@@ -127,6 +128,7 @@ impl Header {
             "vehicle": {"id": ask.vehicle, "name": p.vehicle_name, "blake3": p.vehicle_blake3, "definition": p.vehicle},
             "permit": {
                 "corridor": ask.policy.name(),
+                "at": ask.at.map(|time| time.to_string()),
                 "min_rsc_m": ask.rule.min_rsc_m,
                 "min_width_source": ask.rule.min_width_source.map(WidthSource::name),
                 "edges": tally(&self.edges),

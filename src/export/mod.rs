@@ -30,7 +30,6 @@ pub mod formats;
 mod header;
 mod measurements;
 mod permit;
-mod rings;
 mod sequences;
 mod source;
 mod unfinished;

@@ -4,9 +4,9 @@
 //! may still try the parts, because it certifies the whole route afterwards. An export cannot, so it closes the sequence. Formats
 //! without sequences refuse the first step of the sequence.
 
+use crate::rows::Rings;
 use rustc_hash::FxHashSet;
 
-use super::rings::Rings;
 use super::{ExportError, Source};
 use crate::rows::TurnStep;
 

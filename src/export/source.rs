@@ -5,14 +5,15 @@
 
 use std::path::{Path, PathBuf};
 
+use jiff::civil::DateTime;
+
 use super::ExportError;
 use super::header::{Header, Provenance};
 use super::permit::{Bits, PermitPolicy, Permitted, Refusal};
-use super::rings::Rings;
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::route::Permit;
-use crate::rows::{EdgeRow, TurnRow};
+use crate::rows::{EdgeRow, Rings, TurnRow};
 use crate::store::{Database, QueryOptions, Reference, StoreError};
 
 /// What to export. The vehicle and its turns must be certified under the policy.
@@ -26,6 +27,8 @@ pub struct Ask {
     pub policy: Policy,
     /// The conditions beyond a safe certificate.
     pub rule: PermitPolicy,
+    /// The local time of the permits. `None`: they hold at all times.
+    pub at: Option<DateTime>,
     /// The extract that the database was made from, for targets that need it.
     pub extract: Option<PathBuf>,
     /// The vehicle to compare with, for targets that have columns. It must be certified like `vehicle`. No permit depends on it.
@@ -73,7 +76,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read, or the vehicle is not certified in it.
     pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
-        let mut database = Database::open_to_stream(&ask.db)?;
+        let mut database = open(&ask)?;
         check_certified(&mut database, &ask)?;
         let reference = reference(&mut database, &ask)?;
         let provenance = Provenance::of(&mut database, &ask)?;
@@ -87,7 +90,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read.
     pub fn database(&self) -> Result<Database, ExportError> {
-        Ok(Database::open_to_stream(&self.ask.db)?)
+        open(&self.ask)
     }
 
     /// Every edge, permitted or not, in order of the network.
@@ -146,6 +149,14 @@ fn told<'i, T: 'i>(
         }
         row
     })
+}
+
+fn open(ask: &Ask) -> Result<Database, ExportError> {
+    let mut database = Database::open_to_stream(&ask.db)?;
+    if let Some(time) = ask.at {
+        database.set_time(time)?;
+    }
+    Ok(database)
 }
 
 fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError> {

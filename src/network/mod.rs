@@ -53,7 +53,7 @@ pub use site::Site;
 pub(crate) use site::{Pieces, pieces};
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
-pub use through::{DESTINATION_VALUES, destination_tag, through};
+pub use through::{destination_tag, destination_words, through};
 pub use title::Ends;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};

@@ -1,25 +1,27 @@
 //! Whether a road is open to through traffic, or to a destination only: `destination`, `delivery`, `customers`, `permit`.
 
 use super::{Edge, Network};
-use crate::osm::facts::Permission;
+use crate::osm::facts::{At, Permission};
 use crate::vehicle::Vehicle;
 
 /// Whether a vehicle may pass through an edge on its way to another road. This is the one place that decides it.
 #[must_use]
 pub fn through(network: &Network, edge: &Edge, vehicle: &Vehicle) -> bool {
-    destination_tag(network, edge, vehicle).is_none()
+    network.legal(edge).judge(vehicle, At::Always).permission != Permission::Restricted
 }
 
-/// The tags that open an edge at the ends of a route only. `None` if it is open to through traffic or closed.
+/// The tag that opens an edge at the ends of a route only. `None` if it is open to through traffic or closed. Without a value it is one
+/// of [`DESTINATION_VALUES`]; see [`destination_words`].
 #[must_use]
-pub fn destination_tag(network: &Network, edge: &Edge, _vehicle: &Vehicle) -> Option<&'static str> {
-    let legal = network.legal(edge);
-    match (legal.motor_vehicle, legal.hgv) {
-        (Permission::Yes | Permission::Restricted, Permission::Restricted) => Some("hgv"),
-        (Permission::Restricted, Permission::Yes) => Some("access, vehicle or motor_vehicle"),
-        _ => None,
-    }
+pub fn destination_tag(network: &Network, edge: &Edge, vehicle: &Vehicle) -> Option<String> {
+    network.legal(edge).judge(vehicle, At::Always).destination
 }
 
-/// The values that these tags have, for messages.
-pub const DESTINATION_VALUES: &str = "destination, delivery, customers or permit";
+/// The values that such a tag has.
+const DESTINATION_VALUES: &str = "destination, delivery, customers or permit";
+
+/// A tag of [`destination_tag`] with its values, for messages.
+#[must_use]
+pub fn destination_words(tag: &str) -> String {
+    if tag.contains('=') { tag.to_owned() } else { format!("{tag} = {DESTINATION_VALUES}") }
+}

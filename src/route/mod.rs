@@ -72,7 +72,7 @@ pub use plan::{Answer, Planner, Question, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
 pub use report::{
-    CONDITIONAL, DestinationOnly, PartResult, condition_members, geojson, json, obstacle_members, place, title,
+    CONDITIONAL, LimitedStretch, PartResult, condition_members, geojson, json, obstacle_members, place, title,
 };
 pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};

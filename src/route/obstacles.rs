@@ -134,7 +134,7 @@ impl Obstacle {
     pub fn words(&self, network: &Network, vehicle: &Vehicle) -> (&'static str, &'static str) {
         let (verdict, reason) = verdict_words(self.permit.verdict);
         match (self.tag(network, vehicle), self.refuted) {
-            (Some("hgv"), _) => verdict_words(Verdict::Forbidden(ForbiddenReason::Hgv)),
+            (Some(tag), _) if tag.starts_with("hgv") => verdict_words(Verdict::Forbidden(ForbiddenReason::Hgv)),
             (Some(_), _) => verdict_words(Verdict::Forbidden(ForbiddenReason::Access)),
             (None, true) => ("refuted", reason),
             (None, false) => (verdict, reason),
@@ -143,7 +143,7 @@ impl Obstacle {
 
     /// The tags that open the road to a destination only, if the way passes through such a road here.
     #[must_use]
-    pub fn tag(&self, network: &Network, vehicle: &Vehicle) -> Option<&'static str> {
+    pub fn tag(&self, network: &Network, vehicle: &Vehicle) -> Option<String> {
         let PartKind::Edge(edge) = self.at else { return None };
         let edge = network.edges.get(edge as usize).filter(|_| self.destination_only)?;
         destination_tag(network, edge, vehicle)

@@ -9,11 +9,12 @@ use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
-use crate::network::{Network, PassageKind, destination_tag};
-use crate::osm::facts::WidthSource;
+use crate::network::{Edge, Network, PassageKind, destination_tag};
+use crate::osm::facts::{At, WidthSource};
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
 use crate::vehicle::Vehicle;
+use crate::verdict::{UnknownReason, Verdict};
 use crate::words::{Named, verdict_words};
 
 /// The verdict of a route that is certified only under conditions. It is no verdict of a certificate by itself.
@@ -33,13 +34,13 @@ pub struct PartResult {
     pub rsc_m: Option<f64>,
 }
 
-/// A stretch of a route on a road that is open to its destination only.
+/// A stretch of a route on a road that is not open to every journey at any time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DestinationOnly {
+pub struct LimitedStretch {
     /// The road.
     pub title: String,
-    /// The tags that say so.
-    pub tag: &'static str,
+    /// The tag that says so.
+    pub tag: String,
     /// Beginning, metres from the route's beginning.
     pub from_m: f64,
     /// End, metres from the route's beginning.
@@ -77,15 +78,29 @@ impl Route {
         if corridor.areas.iter().any(|span| meets(&span.heads)) { wider } else { part.clone() }
     }
 
-    /// The stretches on roads that are open to a destination only, each with the tags that say so.
+    /// The stretches on roads that are open to a destination only ([`destination_tag`]).
     #[must_use]
-    pub fn destination_only(&self, network: &Network, vehicle: &Vehicle) -> Vec<DestinationOnly> {
+    pub fn destination_only(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {
+        self.stretches(network, |edge| destination_tag(network, edge, vehicle))
+    }
+
+    /// The stretches on roads that are closed to the vehicle at some times. A certified route has them only if it was asked for a time.
+    #[must_use]
+    pub fn only_at_times(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {
+        self.stretches(network, |edge| {
+            let judged = network.legal(edge).judge(vehicle, At::Always);
+            judged.rule.filter(|_| judged.verdict == Some(Verdict::Unknown(UnknownReason::Time)))
+        })
+    }
+
+    /// The stretches on edges that have a tag of this kind.
+    fn stretches(&self, network: &Network, tag_of: impl Fn(&Edge) -> Option<String>) -> Vec<LimitedStretch> {
         let spacing_m = self.path.corridor.spacing_m;
-        let mut stretches: Vec<DestinationOnly> = Vec::new();
+        let mut stretches: Vec<LimitedStretch> = Vec::new();
         for part in &self.path.parts {
             let PartKind::Edge(no) = part.kind else { continue };
             let Some(edge) = network.edges.get(no as usize) else { continue };
-            let Some(tag) = destination_tag(network, edge, vehicle) else { continue };
+            let Some(tag) = tag_of(edge) else { continue };
             let from_m = part.stations.start as f64 * spacing_m;
             let to_m = part.stations.end.saturating_sub(1) as f64 * spacing_m;
             let title = network.title(edge);
@@ -93,7 +108,7 @@ impl Route {
                 Some(last) if last.title == title && last.tag == tag && from_m - last.to_m <= spacing_m => {
                     last.to_m = to_m;
                 }
-                _ => stretches.push(DestinationOnly { title, tag, from_m, to_m }),
+                _ => stretches.push(LimitedStretch { title, tag, from_m, to_m }),
             }
         }
         stretches
@@ -172,13 +187,14 @@ fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
         "limiting_unit_name": model.vehicle.units.get(result.limiting.unit).map(|unit| unit.name.as_str()),
         "limiting_side": result.limiting.side.name(),
         "limiting_at": route.limiting().map(|at| title(network, at)),
-        "destination_only": route.destination_only(network, &model.vehicle).iter().map(|stretch| json!({
-            "title": stretch.title,
-            "tag": stretch.tag,
-            "from_m": stretch.from_m,
-            "to_m": stretch.to_m,
-        })).collect::<Vec<_>>(),
+        "destination_only": stretches(&route.destination_only(network, &model.vehicle)),
+        "only_at_times": stretches(&route.only_at_times(network, &model.vehicle)),
     })
+}
+
+fn stretches(all: &[LimitedStretch]) -> Vec<Value> {
+    let members = |stretch: &LimitedStretch| json!({"title": stretch.title, "tag": stretch.tag, "from_m": stretch.from_m, "to_m": stretch.to_m});
+    all.iter().map(members).collect()
 }
 
 fn part_members(network: &Network, part: &PartResult) -> Value {

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 
 /// All roundabouts.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Rings {
+pub(crate) struct Rings {
     rings: Vec<Vec<u32>>,
     /// By arc: the index of its ring, and its index on the ring.
     at: FxHashMap<u32, (usize, usize)>,
@@ -13,7 +13,7 @@ pub(super) struct Rings {
 
 impl Rings {
     /// Indexes the rings of [`crate::store::Database::rings`].
-    pub(super) fn new(rings: Vec<Vec<u32>>) -> Self {
+    pub(crate) fn new(rings: Vec<Vec<u32>>) -> Self {
         let places = rings
             .iter()
             .enumerate()
@@ -22,7 +22,7 @@ impl Rings {
     }
 
     /// The edges from the first to the last in driving order. `None` if only one of them is on a ring, or they are on two.
-    pub(super) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
+    pub(crate) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
         let (&(ring, from), &(same, to)) = match (self.at.get(&first), self.at.get(&last)) {
             (None, None) if first == last => return Some(vec![first]),
             (None, None) => return Some(vec![first, last]),

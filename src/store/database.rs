@@ -5,6 +5,7 @@ use std::io::Read as _;
 use std::path::Path;
 use std::time::Duration;
 
+use jiff::civil::DateTime;
 use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteSynchronous};
 
@@ -36,6 +37,8 @@ pub struct Database {
     pub(super) session: Session,
     /// The state of the register when the network was loaded.
     loaded: Option<RegisterState>,
+    /// The time of the verdicts that queries give. `None`: of all times together.
+    pub(super) time: Option<DateTime>,
 }
 
 /// Size of the page cache, KiB.
@@ -87,7 +90,7 @@ impl Database {
             .busy_timeout(Duration::from_secs(5))
             .pragma("cache_size", format!("-{cache_kib}"))
             .pragma("temp_store", "MEMORY");
-        let mut database = Self { session: Session::open(path, &options)?, loaded: None };
+        let mut database = Self { session: Session::open(path, &options)?, loaded: None, time: None };
         database.check_schema()?;
         Ok(database)
     }

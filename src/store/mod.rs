@@ -6,6 +6,7 @@
 
 mod amend;
 mod areas;
+mod at_time;
 mod backdrop;
 mod blob;
 mod bulk;

@@ -153,7 +153,7 @@ fn section(row: &SqliteRow, column: usize) -> Sql<CrossSection> {
 }
 
 /// Sets of rules by their text, each read once.
-type RuleSets = FxHashMap<String, RuleSet>;
+pub(super) type RuleSets = FxHashMap<String, RuleSet>;
 
 /// The set of rules in a column.
 fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<RuleSet>> {
@@ -167,7 +167,7 @@ fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<R
 }
 
 /// Limits and access in a row: the limits from `column` on, the rules in the column `rules`.
-fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut RuleSets) -> Sql<Legal> {
+pub(super) fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut RuleSets) -> Sql<Legal> {
     let unreadable: Option<&str> = row.try_get(column + 5)?;
     let limit = |at: usize, name: &str| -> Sql<Limit> {
         if unreadable.is_some_and(|names| names.split(',').any(|other| other == name)) {
@@ -187,10 +187,15 @@ fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut RuleSets) -> S
     })
 }
 
+/// The country code in a column.
+pub(super) fn country(row: &SqliteRow, column: usize) -> Sql<[u8; 2]> {
+    let country: &str = row.try_get(column)?;
+    country.as_bytes().try_into().map_err(|_| content(format!("`{country}` is no country code")))
+}
+
 fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &mut StringPool) -> Sql<Road> {
     let highway: &str = row.try_get(2)?;
     let (class, link) = class_and_link(highway).ok_or_else(|| content(format!("`{highway}` is no class of road")))?;
-    let country: &str = row.try_get(8)?;
     let section = |column| index(row, column, sections.len()).map(|i| sections[i as usize]);
     let legal = |column| index(row, column, legals.len()).map(|i| legals[i as usize].clone());
     Ok(Road {
@@ -202,7 +207,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
         name: row.try_get::<Option<&str>, _>(5)?.map(|text| strings.intern(text)),
         reference: row.try_get::<Option<&str>, _>(6)?.map(|text| strings.intern(text)),
         lanes: row.try_get(7)?,
-        country: country.as_bytes().try_into().map_err(|_| content(format!("`{country}` is no country code")))?,
+        country: country(row, 8)?,
         left_hand_traffic: row.try_get(9)?,
         sections: [section(10)?, section(11)?],
         legal: [legal(12)?, legal(13)?],

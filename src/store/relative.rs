@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::iter::Fuse;
 use std::path::Path;
 
+use jiff::civil::DateTime;
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
@@ -145,7 +146,7 @@ impl Database {
         set: &CertifiedSet,
         reference: &Reference,
     ) -> Result<Vec<RelativeCount>, StoreError> {
-        let mut other = ReferenceReader::open(&self.session.path, reference.clone())?;
+        let mut other = ReferenceReader::open(&self.session.path, reference.clone(), self.time)?;
         let mut beside = other.edges()?;
         let sql = "SELECT c.fid, c.verdict_no, c.rsc_mm, c.hinge_margin_cdeg, e.length_m \
                    FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
@@ -225,13 +226,18 @@ pub struct ReferenceReader {
 }
 
 impl ReferenceReader {
-    /// Opens the database at `path`, in which the reference is.
+    /// Opens the database at `path`, in which the reference is, with its verdicts at a time ([`Database::set_time`]) if one is given.
     ///
     /// # Errors
     /// As [`Database::open`].
-    pub fn open(path: &Path, reference: Reference) -> Result<Self, StoreError> {
+    pub fn open(path: &Path, reference: Reference, time: Option<DateTime>) -> Result<Self, StoreError> {
         let read = reference.vehicles.iter().filter(|vehicle| !vehicle.same);
-        let databases = read.map(|_| Database::open_to_stream(path)).collect::<Result<_, _>>()?;
+        let open = |_| {
+            let mut database = Database::open_to_stream(path)?;
+            time.map(|time| database.set_time(time)).transpose()?;
+            Ok(database)
+        };
+        let databases = read.map(open).collect::<Result<_, StoreError>>()?;
         Ok(Self { reference, databases })
     }
 

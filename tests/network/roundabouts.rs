@@ -225,6 +225,41 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
 }
 
 #[test]
+fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
+    let ring = "highway=secondary width=8 maxweight=abc";
+    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", false), false, 12.0);
+    let turns = drawn.facts();
+    let over = drawn.passage("WE");
+    for (on_the_ring, expected) in [
+        (Verdict::Unsafe(UnsafeReason::Width), Verdict::Unknown(UnknownReason::Limit)),
+        (Verdict::Unknown(UnknownReason::Limit), Verdict::Unknown(UnknownReason::Limit)),
+    ] {
+        let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
+        over.through.iter().for_each(|&arc| edges[arc as usize] = on_the_ring);
+        let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
+        let verdict = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap().conclusion.verdict;
+        assert_eq!(verdict, expected, "arcs {on_the_ring:?}");
+    }
+}
+
+#[test]
+fn a_passage_over_an_arc_that_is_closed_at_night_is_certified_for_the_day() {
+    let ring = "highway=secondary width=8 hgv:conditional=no@(22:00-06:00)";
+    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", false), false, 12.0);
+    let turns = drawn.facts();
+    let over = drawn.passage("WE");
+    let time = Verdict::Unknown(UnknownReason::Time);
+    for on_the_ring in [time, Verdict::Unsafe(UnsafeReason::Width)] {
+        let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
+        over.through.iter().for_each(|&arc| edges[arc as usize] = on_the_ring);
+        let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
+        let made = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap();
+        assert_eq!(made.conclusion.verdict, time, "arcs {on_the_ring:?}");
+        assert!(made.conclusion.measured.is_some_and(|measured| measured.rsc_m >= 0.0));
+    }
+}
+
+#[test]
 fn a_restriction_within_the_ring_forbids_the_passage() {
     let tags = "highway=secondary width=8";
     let ring = 1;

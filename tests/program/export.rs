@@ -13,7 +13,7 @@ use program::Place;
 
 fn ask(place: &Place, rule: PermitPolicy) -> Ask {
     let (db, vehicle) = (place.path("demo.gpkg"), "AU-SEMI19".to_owned());
-    Ask { db, vehicle, policy: Policy::Lane, rule, extract: None, relative_to: None }
+    Ask { db, vehicle, policy: Policy::Lane, rule, at: None, extract: None, relative_to: None }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod all_outputs;
+mod at_time;
 mod cli;
 mod columns;
 mod conditional;

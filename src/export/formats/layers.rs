@@ -54,7 +54,8 @@ impl Layer {
         mut put: impl FnMut(&Row<'_>) -> Result<(), ExportError>,
     ) -> Result<(), ExportError> {
         let mut database = source.database()?;
-        let reference = source.reference.clone().map(|reference| ReferenceReader::open(&source.ask.db, reference));
+        let reference =
+            source.reference.clone().map(|reference| ReferenceReader::open(&source.ask.db, reference, source.ask.at));
         let mut reference = reference.transpose()?;
         match self {
             Self::Edges => {

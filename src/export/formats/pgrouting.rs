@@ -15,10 +15,10 @@ use std::io::{self, Write};
 use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
-use crate::export::rings::Rings;
 use crate::export::{ExportEdge, ExportError, Layout, Place, Refusal, Sink, Source};
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
+use crate::rows::Rings;
 use crate::words::Named;
 
 /// Creates the tables in one transaction and loads them from the files beside it.

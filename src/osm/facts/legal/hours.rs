@@ -4,7 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use jiff::civil::DateTime;
-use opening_hours::{OpeningHours, RuleKind};
+use opening_hours::localization::Country;
+use opening_hours::{Context, OpeningHours, RuleKind};
 
 use super::condition::Truth;
 use super::subject::At;
@@ -15,8 +16,10 @@ pub(crate) struct Hours {
     text: String,
     /// `None`: times that only people understand.
     parsed: Option<Arc<OpeningHours>>,
-    /// Whether it asks for holidays or for the sun, which depend on the place.
-    local: bool,
+    /// Whether it asks for public holidays.
+    holidays: bool,
+    /// Whether it asks for school holidays or for the sun, which are not known here.
+    unknown: bool,
 }
 
 impl fmt::Debug for Hours {
@@ -84,10 +87,9 @@ impl Hours {
         }
         let parsed = parse(text).or_else(|| parse(&shortened(text)));
         let lower = text.to_ascii_lowercase();
-        let local = ["ph", "sh", "sunrise", "sunset", "dawn", "dusk"]
-            .iter()
-            .any(|word| lower.split(|c: char| !c.is_alphabetic()).any(|other| other == *word));
-        Some(Self { text: text.to_owned(), parsed: parsed.map(Arc::new), local })
+        let asks = |words: &[&str]| lower.split(|c: char| !c.is_alphabetic()).any(|word| words.contains(&word));
+        let (holidays, unknown) = (asks(&["ph"]), asks(&["sh", "sunrise", "sunset", "dawn", "dusk"]));
+        Some(Self { text: text.to_owned(), parsed: parsed.map(Arc::new), holidays, unknown })
     }
 
     /// Whether it holds at all times, or at none, if it is so plain.
@@ -109,13 +111,27 @@ impl Hours {
             return of(always);
         }
         match (at, &self.parsed) {
-            (At::Time(time), Some(parsed)) if !self.local => match naive(time).map(|time| parsed.state(time).0) {
+            (At::Time { time, country }, Some(parsed)) if !self.unknown => match self.state(parsed, time, country) {
                 Some(RuleKind::Open) => of(true),
                 Some(RuleKind::Closed) => of(false),
                 Some(RuleKind::Unknown) | None => Truth::Sometimes,
             },
             _ => Truth::Sometimes,
         }
+    }
+
+    /// The state at a time. `Unknown` on a day that is a public holiday in a part of the country only.
+    fn state(&self, parsed: &OpeningHours, time: DateTime, country: [u8; 2]) -> Option<RuleKind> {
+        let naive = naive(time)?;
+        if !self.holidays {
+            return Some(parsed.state(naive).0);
+        }
+        let country: Country = std::str::from_utf8(&country).ok()?.parse().ok()?;
+        let (holidays, regional) = (country.holidays(), country.holidays_regional());
+        // The list ends in some year.
+        holidays.get_public().first_after(naive.date() + chrono::Days::new(366))?;
+        let context = Context::default().with_holidays(holidays).with_holidays_unknown(regional);
+        Some(parsed.clone().with_context(context).state(naive).0)
     }
 }
 

@@ -52,8 +52,12 @@ impl Chain {
     }
 }
 
-/// Adds what an object's rules say against a vehicle to `found`, and returns its permission.
-pub(crate) fn judge<'g>(group: &'g Group, subject: &Subject<'_>, found: &mut Vec<Finding<'g>>) -> Permission {
+/// Adds what an object's rules say against a vehicle to `found`, and returns its permission with the rule that gives it.
+pub(crate) fn judge<'g>(
+    group: &'g Group,
+    subject: &Subject<'_>,
+    found: &mut Vec<Finding<'g>>,
+) -> (Permission, Option<&'g Rule>) {
     let access = outcomes(group, subject, Chain::Access);
     found.extend(finding(group, &access, Chain::Access));
     let oneway = outcomes(group, subject, Chain::Oneway);
@@ -61,7 +65,11 @@ pub(crate) fn judge<'g>(group: &'g Group, subject: &Subject<'_>, found: &mut Vec
     for rule in &group.rules {
         found.extend(of_rule(rule, subject));
     }
-    access.iter().map(|outcome| outcome.permission).filter(|&p| p < Permission::No).max().unwrap_or(Permission::No)
+    let open = access.iter().filter(|outcome| outcome.permission < Permission::No);
+    let strictest = open.max_by_key(|outcome| outcome.permission);
+    strictest.map_or((Permission::No, None), |outcome| {
+        (outcome.permission, outcome.rule.and_then(|rule| group.rules.get(rule)))
+    })
 }
 
 /// Whether the rules of one-way traffic close the direction to all vehicles of the class at all times.

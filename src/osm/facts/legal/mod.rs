@@ -44,6 +44,8 @@ pub struct Judgement {
     pub verdict: Option<Verdict>,
     /// Whether it may go through, or only to a destination here. `No` beside a verdict.
     pub permission: Permission,
+    /// The tag that opens the road to a destination only: as `key=value` if it is a rule of a [`RuleSet`], else its keys.
+    pub destination: Option<String>,
     /// The rule behind the verdict as `key=value`, if it is one of a [`RuleSet`].
     pub rule: Option<String>,
     /// What a limit of that rule allows, in `unit`.
@@ -181,6 +183,7 @@ impl Legal {
             let of = |verdict, allowed| Judgement {
                 verdict: Some(verdict),
                 permission: Permission::No,
+                destination: None,
                 rule: None,
                 allowed,
                 has: Some(size),
@@ -196,7 +199,11 @@ impl Legal {
                 _ => {}
             }
         }
-        unreadable.unwrap_or(Judgement { permission, ..Judgement::default() })
+        let restricted = (permission == Permission::Restricted).then(|| {
+            let keys = if hgv == Permission::Restricted { "hgv" } else { "access, vehicle or motor_vehicle" };
+            keys.to_owned()
+        });
+        unreadable.unwrap_or(Judgement { permission, destination: restricted, ..Judgement::default() })
     }
 
     /// The rules that say different things at different times, as text. `None` without one.
@@ -208,9 +215,12 @@ impl Legal {
 
 fn judge_rules(rules: &RuleSet, subject: &Subject<'_>) -> Judgement {
     let mut found = Vec::new();
-    let mut permission = Permission::Yes;
+    let (mut permission, mut by) = (Permission::Yes, None);
     for group in rules.groups() {
-        permission = permission.max(judge::judge(group, subject, &mut found));
+        let (own, rule) = judge::judge(group, subject, &mut found);
+        if own > permission {
+            (permission, by) = (own, rule);
+        }
     }
     let mut worst: Option<judge::Finding<'_>> = None;
     for finding in found {
@@ -219,7 +229,8 @@ fn judge_rules(rules: &RuleSet, subject: &Subject<'_>) -> Judgement {
         }
     }
     let Some(judge::Finding { verdict, rule, limit }) = worst else {
-        return Judgement { permission, ..Judgement::default() };
+        let destination = by.filter(|_| permission == Permission::Restricted).map(|rule| rule.text.clone());
+        return Judgement { permission, destination, ..Judgement::default() };
     };
     let (property, allowed) = limit.map_or((None, None), |(property, allowed)| (Some(property), allowed));
     // The size that a rule of access compares.
@@ -234,6 +245,7 @@ fn judge_rules(rules: &RuleSet, subject: &Subject<'_>) -> Judgement {
     Judgement {
         verdict: Some(verdict),
         permission: Permission::No,
+        destination: None,
         rule: Some(rule.text.clone()),
         allowed,
         has,

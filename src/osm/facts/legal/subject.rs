@@ -10,8 +10,13 @@ pub enum At {
     /// Whenever: what is closed at some time is not open.
     #[default]
     Always,
-    /// Local time of the place.
-    Time(DateTime),
+    /// A time.
+    Time {
+        /// Local time of the place.
+        time: DateTime,
+        /// The country of the place, with whose public holidays it is judged: ISO 3166-1, two letters.
+        country: [u8; 2],
+    },
 }
 
 /// Who drives, and when.

@@ -522,7 +522,7 @@ fn nodes_without_barriers_close_roads_too() {
 fn a_time_decides_what_time_decides() {
     let vehicle = vehicle("EU-SEMI16.5");
     // A Wednesday.
-    let at = |hour| At::Time(date(2026, 12, 2).at(hour, 30, 0, 0));
+    let at = |hour| At::Time { time: date(2026, 12, 2).at(hour, 30, 0, 0), country: *b"DE" };
     for (text, expected) in [
         ("hgv:conditional=no @ (22:00-06:00)", ["forbidden/hgv", "open"]),
         ("hgv=no | hgv:conditional=yes @ (06:00-22:00)", ["forbidden/hgv", "open"]),
@@ -532,7 +532,8 @@ fn a_time_decides_what_time_decides() {
         ("maxweight:conditional=3.5 @ (22:00-06:00)", ["forbidden/weight", "open"]),
         ("hgv:conditional=no @ (wet)", ["unknown/time", "unknown/time"]),
         ("hgv:conditional=no @ (sunset-sunrise)", ["unknown/time", "unknown/time"]),
-        ("hgv:conditional=no @ (PH)", ["unknown/time", "unknown/time"]),
+        ("hgv:conditional=no @ (SH)", ["unknown/time", "unknown/time"]),
+        ("hgv:conditional=no @ (PH)", ["open", "open"]),
         ("hgv:conditional=no @ (emissions<euro_5)", ["unknown/rule", "unknown/rule"]),
         ("oneway=reversible", ["unknown/time", "unknown/time"]),
         ("hgv=no", ["forbidden/hgv", "forbidden/hgv"]),
@@ -545,6 +546,27 @@ fn a_time_decides_what_time_decides() {
     let [forward, backward] = legal("oneway=yes | oneway:conditional=no @ (22:00-06:00)").map(Option::unwrap);
     assert_eq!([2, 12].map(|hour| words(forward.judge(&vehicle, at(hour)).verdict)), ["open", "open"]);
     assert_eq!([2, 12].map(|hour| words(backward.judge(&vehicle, at(hour)).verdict)), ["open", "forbidden/oneway"]);
+}
+
+#[test]
+fn public_holidays_decide_where_the_whole_country_has_them() {
+    let vehicle = vehicle("EU-SEMI16.5");
+    let legal = legal("hgv:conditional=no @ (Su,PH 00:00-22:00)")[0].clone().unwrap();
+    let christmas = date(2026, 12, 25);
+    let corpus_christi = date(2026, 6, 4); // in some of the German states only
+    for (day, hour, country, expected) in [
+        (date(2026, 12, 6), 9, *b"DE", "forbidden/hgv"), // a Sunday
+        (date(2026, 12, 8), 9, *b"DE", "open"),          // a Tuesday
+        (christmas, 9, *b"DE", "forbidden/hgv"),
+        (christmas, 23, *b"DE", "open"),
+        (corpus_christi, 9, *b"DE", "unknown/time"),
+        (corpus_christi, 9, *b"FR", "open"),
+        (date(2026, 12, 8), 9, *b"??", "unknown/time"),
+        (date(2990, 12, 8), 9, *b"DE", "unknown/time"), // no list goes so far
+    ] {
+        let at = At::Time { time: day.at(hour, 0, 0, 0), country };
+        assert_eq!(words(legal.judge(&vehicle, at).verdict), expected, "{day} {hour} {country:?}");
+    }
 }
 
 #[test]
@@ -684,7 +706,7 @@ proptest! {
         let (ab, ba) = (a.merge(&b), b.merge(&a));
         prop_assert_eq!(&ab, &ba);
         prop_assert_eq!(&ab.merge(&a), &ab);
-        for at in [At::Always, At::Time(date(2026, 7, 4).at(23, 0, 0, 0))] {
+        for at in [At::Always, At::Time { time: date(2026, 7, 4).at(23, 0, 0, 0), country: *b"FR" }] {
             let strict = |legal: &Legal| super::judge::weight(legal.judge(&vehicle, at).verdict.unwrap_or(Verdict::Safe));
             prop_assert_eq!(strict(&ab), strict(&a).max(strict(&b)));
         }
@@ -693,7 +715,7 @@ proptest! {
     #[test]
     fn a_time_never_closes_what_is_open_always(tags in some_tags(), vehicle in any_vehicle(), hour in 0..24_i8, month in 1..13_i8) {
         for legal in legal(&tags.join(" | ")).into_iter().flatten() {
-            let then = legal.judge(&vehicle, At::Time(date(2027, month, 3).at(hour, 0, 0, 0))).verdict;
+            let then = legal.judge(&vehicle, At::Time { time: date(2027, month, 3).at(hour, 0, 0, 0), country: *b"DE" }).verdict;
             match legal.forbids(&vehicle) {
                 None => prop_assert_eq!(then, None),
                 Some(forbidden @ Verdict::Forbidden(_)) => prop_assert_eq!(then.map(super::judge::weight), Some(super::judge::weight(forbidden))),
