@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::rules;
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
@@ -34,6 +35,8 @@ pub struct SetClaim<'a> {
     pub policy: Policy,
     /// The parameters of corridors.
     pub params: &'a Params,
+    /// How far plans may shift the centreline, metres.
+    pub max_shift_m: f64,
     /// The rows to check, by edge.
     pub rows: &'a BTreeMap<u32, EdgeRow>,
     /// The plans that are not the centreline, by the stroke's first edge.
@@ -110,8 +113,8 @@ impl SetClaim<'_> {
         if coefficients.len() != plan::count(made.corridor.len()) {
             return malformed(format!("the plan has {} coefficients", coefficients.len()));
         }
-        if let Err(why) = plan::level(coefficients) {
-            return malformed(format!("the plan is {why}"));
+        if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
+            return malformed(format!("the plan: {why}"));
         }
         let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), true) {
             Ok(subject) => subject,
@@ -134,8 +137,10 @@ impl SetClaim<'_> {
         let outcome = |row: &EdgeRow| {
             let Some(span) = span_of(row) else { return Outcome::Malformed("its stroke does not pass it".to_owned()) };
             let mut all = found.remove(&row.edge).unwrap_or_default();
-            if let Outcome::NotConfirmed(more) = self.without_claims(row, span.unknown) {
-                all.extend(more);
+            match self.without_claims(row, span.unknown) {
+                Outcome::Confirmed => {}
+                Outcome::NotConfirmed(more) => all.extend(more),
+                malformed @ Outcome::Malformed(_) => return malformed,
             }
             if span.unknown.is_none() {
                 all.extend(self.road(made, span));
@@ -153,6 +158,9 @@ impl SetClaim<'_> {
         let Some(edge) = self.network.edges.get(row.edge as usize) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
+        if let Some(Err(why)) = row.certificate.shrink.map(|shrink| rules::shrink(self.vehicle, shrink)) {
+            return Outcome::Malformed(why);
+        }
         // A machine that failed claims nothing, nor does work that took too long.
         if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
             return Outcome::Confirmed;

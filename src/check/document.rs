@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::members::{Members, Wrong};
+use super::rules;
 use crate::corridor::{Area, AreaSpan, Corridor, Frame};
 use crate::vehicle::Vehicle;
 use netcert_check::plan;
@@ -90,9 +91,7 @@ impl Document {
         let coefficients = coefficients(&all, n)?;
         planned(&all, &corridor, frame, &coefficients)?;
         let shrink = all.number("shrink")?;
-        if !(shrink >= vehicle.min_shrink - 1e-3 && shrink <= 1.0) {
-            return Err(format!("shrink: {shrink} is not from the vehicle's min_shrink to 1"));
-        }
+        rules::shrink(&vehicle, shrink)?;
         if all.number("tracking_tolerance_m")? != vehicle.tracking_tolerance_m {
             return Err("tracking_tolerance_m: not the vehicle's".to_owned());
         }
@@ -234,12 +233,12 @@ fn coefficients(all: &Members<'_>, stations: usize) -> Result<Vec<i32>, Wrong> {
         return Err(format!("max_shift_m: {most_m} is not from 0 to {MOST_SHIFT_M}"));
     }
     let numbers = all.numbers("shift", plan::count(stations))?;
-    let most = most_m / plan::STEP_M + 0.5;
-    if let Some(k) = numbers.iter().position(|c| c.fract() != 0.0 || c.abs() > most) {
-        return Err(format!("shift[{k}]: {} is not a whole number of steps within max_shift_m", numbers[k]));
+    if let Some(k) = numbers.iter().position(|c| c.fract() != 0.0) {
+        return Err(format!("shift[{k}]: {} is not a whole number of steps", numbers[k]));
     }
+    // Numbers beyond 32 bits become the greatest one, which no rule allows.
     let whole: Vec<i32> = numbers.iter().map(|&c| c as i32).collect();
-    plan::level(&whole).map_err(|why| format!("shift: {why}"))?;
+    rules::shift(&whole, most_m)?;
     Ok(whole)
 }
 

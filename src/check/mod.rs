@@ -16,6 +16,7 @@ mod document;
 mod file;
 mod members;
 mod row_claim;
+mod rules;
 mod turns;
 
 pub use database::{RowOutcome, SetClaim, SetReport};

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::database::{RowOutcome, SetReport};
+use super::rules;
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
@@ -34,6 +35,8 @@ pub struct TurnsClaim<'a> {
     pub policy: Policy,
     /// The parameters of the turns' corridors.
     pub params: &'a TurnParams,
+    /// How far plans may shift a path, metres.
+    pub max_shift_m: f64,
     /// All turns of the network, in order.
     pub facts: &'a [TurnFacts],
     /// The database's verdicts for the vehicle, by edge.
@@ -137,6 +140,9 @@ impl TurnsClaim<'_> {
         if let Some(wrong) = self.misdescribed(turn, row) {
             return (Outcome::Malformed(wrong), 0.0);
         }
+        if let Some(Err(why)) = row.certificate.shrink.map(|shrink| rules::shrink(self.vehicle, shrink)) {
+            return (Outcome::Malformed(why), 0.0);
+        }
         // A machine that failed claims nothing, nor does work that took too long.
         if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
             return (Outcome::Confirmed, 0.0);
@@ -203,8 +209,8 @@ impl TurnsClaim<'_> {
         if coefficients.len() != none.len() {
             return (Outcome::Malformed(format!("the plan has {} coefficients", coefficients.len())), 0.0);
         }
-        if let Err(why) = plan::level(coefficients) {
-            return (Outcome::Malformed(format!("the plan is {why}")), 0.0);
+        if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
+            return (Outcome::Malformed(format!("the plan: {why}")), 0.0);
         }
         let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), true) {
             Ok(subject) => subject,

@@ -24,6 +24,11 @@ const MAX_FILE_BYTES: u64 = 1 << 30;
 /// At most this many unconfirmed certificates are listed. All of them are counted.
 const MOST_LISTED: usize = 100;
 
+/// What a database says besides, and the checker does not compute.
+const NOT_CHECKED: &str = "Not checked: what would be enough (need_width_m, need_kerb_radius_m, need_flare_m), lengths, radii and deviations of \
+                           edges, lines and angles of turns, and areas of junctions. A whole turn restriction or road that is gone from the file \
+                           is found only with the extract.";
+
 /// Check certificates again with code that is independent of the code that made them.
 #[derive(Args)]
 #[command(after_help = "\
@@ -93,6 +98,7 @@ impl Verify {
             writeln!(out, "{word:<13}  {}", printable(detail))?;
         }
         out.flush()?;
+        session.progress.say(NOT_CHECKED);
         if complaints.is_empty() {
             return Ok(());
         }

@@ -1,7 +1,7 @@
 //! Reads one edge with all columns that are of interest to people.
 
-use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::osm::facts::Policy;
 use crate::rows::EdgeFacts;
@@ -9,22 +9,34 @@ use crate::rows::EdgeFacts;
 use super::database::Database;
 use super::error::StoreError;
 use super::network_read::{line, word, word_or_none};
+use super::stream::Streamed;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
+/// The columns that [`facts`] reads.
+const SELECT: &str = "SELECT fid, edge_id, way_id, from_node, to_node, direction, oneway, highway, name, ref, lanes, \
+                      length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
+                      carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
+                      max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
+                      barred, cut, geom, maxspeed_kmh, rules, open_when FROM edge";
+
 impl Database {
+    /// Every edge, in order of the network.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn all_edge_facts(&mut self) -> Result<Streamed<'_, EdgeFacts>, StoreError> {
+        Ok(self.streamed_plainly(format!("{SELECT} ORDER BY fid"), facts))
+    }
+
     /// The edge with this `edge_id`, or `None`.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn edge_facts(&mut self, edge_id: i64) -> Result<Option<EdgeFacts>, StoreError> {
-        let sql = "SELECT fid, edge_id, way_id, from_node, to_node, direction, oneway, highway, name, ref, lanes, \
-                   length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
-                   carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
-                   max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
-                   barred, cut, geom, maxspeed_kmh, rules, open_when FROM edge WHERE edge_id = ?";
+        let sql = format!("{SELECT} WHERE edge_id = ?");
         self.session.run(async |c| {
-            let row = sqlx::query(sql).bind(edge_id).fetch_optional(c).await?;
+            let row = sqlx::query(AssertSqlSafe(sql)).bind(edge_id).fetch_optional(c).await?;
             row.as_ref().map(facts).transpose()
         })
     }

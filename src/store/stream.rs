@@ -105,8 +105,7 @@ impl Database {
                    FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
                    LEFT JOIN stroke_edge AS b ON b.position = a.position + 1 AND b.position <= s.edge_end \
                    ORDER BY s.stroke_no, a.position";
-        let stream = sqlx::query(sql).fetch(&mut self.session.connection);
-        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: straight_on })
+        Ok(self.streamed_plainly(sql.to_owned(), straight_on))
     }
 
     /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order. They are few, so all are read at
@@ -124,6 +123,12 @@ impl Database {
             let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
             Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
         })
+    }
+
+    /// The rows of a statement without parameters.
+    pub(super) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
+        let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
+        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 
     pub(super) fn streamed<T>(

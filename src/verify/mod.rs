@@ -2,6 +2,7 @@
 //!
 //! [`crate::check`] decides. This module reads what it is told of, and neither uses the prover.
 
+mod displayed;
 mod error;
 mod records;
 
@@ -151,6 +152,7 @@ pub fn verify(
     let mut records = records::check(&mut database, request.source.as_deref())?;
     let network = database.load_network()?;
     records.extend(measurements(&mut database, &network)?);
+    records.extend(displayed::check(&mut database, &network)?);
     let mut sets = Vec::new();
     let mut facts: Option<(Kerbs, Vec<TurnFacts>)> = None;
     for set in request.sets(&mut database, path)? {
@@ -160,11 +162,18 @@ pub fn verify(
             done(&checked);
             sets.push(checked);
         };
+        records.extend(missing_edges(&mut database, &network, &set)?);
         add(Kind::Edge, request.edges(&mut database, &network, (&set, &settings), stop)?);
-        if database.has_turns(&set.vehicle_id, set.policy)? {
+        let has_turns = database.has_turns(&set.vehicle_id, set.policy)?;
+        if settings.turns && !has_turns {
+            let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
+            records.push(Complaint { malformed: true, detail });
+        }
+        if has_turns {
             let known = facts.take().filter(|(kerbs, _)| *kerbs == settings.kerbs);
             let made = || (settings.kerbs.clone(), turn_facts(&network, &settings.kerbs));
             let (_, facts) = facts.insert(known.unwrap_or_else(made));
+            records.extend(missing_turns(&mut database, facts, &set)?);
             add(Kind::Turn, request.turns(&mut database, (&network, facts), (&set, &settings), stop)?);
         }
     }
@@ -200,6 +209,7 @@ impl Request {
             vehicle: &vehicle,
             policy: set.policy,
             params: &settings.corridor,
+            max_shift_m: settings.stet.max_shift_m,
             rows: &rows,
             plans: &plans,
         };
@@ -229,6 +239,7 @@ impl Request {
             vehicle: &vehicle,
             policy: set.policy,
             params: &params,
+            max_shift_m: settings.stet.max_shift_m,
             facts,
             edges: &edges,
             rows: &rows,
@@ -250,6 +261,38 @@ impl Request {
         }
         rows
     }
+}
+
+/// Complaints about edges of the network that have no row in a set.
+fn missing_edges(
+    database: &mut Database,
+    network: &Network,
+    set: &CertifiedSet,
+) -> Result<Vec<Complaint>, VerifyError> {
+    let rows = database.edge_standings(&set.vehicle_id, set.policy)?;
+    let there: Vec<u32> = rows.map(|row| row.map(|(index, _)| index)).collect::<Result<_, _>>()?;
+    Ok(missing(set, Kind::Edge, &there, network.edges.iter().map(|edge| edge.id)))
+}
+
+/// Complaints about turns of the network that have no row in a set.
+fn missing_turns(
+    database: &mut Database,
+    facts: &[TurnFacts],
+    set: &CertifiedSet,
+) -> Result<Vec<Complaint>, VerifyError> {
+    let rows = database.turn_standings(&set.vehicle_id, set.policy)?;
+    let there: Vec<u32> = rows.map(|row| row.map(|(index, _)| index)).collect::<Result<_, _>>()?;
+    Ok(missing(set, Kind::Turn, &there, facts.iter().map(|turn| turn.id)))
+}
+
+/// `there`: the indices of the rows, in order. `all`: the ids of what is to have one.
+fn missing(set: &CertifiedSet, kind: Kind, there: &[u32], all: impl Iterator<Item = i64>) -> Vec<Complaint> {
+    let lacking = (0_u32..).zip(all).filter(|(index, _)| there.binary_search(index).is_err());
+    let complaint = |(_, id): (u32, i64)| Complaint {
+        malformed: true,
+        detail: format!("{} {} {id}: it has no certificate", set.vehicle_id, kind.word()),
+    };
+    lacking.map(complaint).collect()
 }
 
 /// Decides again what of the register counts. Complaints name measurements for which the database says otherwise.

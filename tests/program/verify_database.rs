@@ -30,6 +30,15 @@ fn every_column_changed_in_the_unsafe_direction_is_refuted() {
         "UPDATE certified_set SET settings = json_set(settings, '$.map_tolerance_m', 0.4)".to_owned(),
         "UPDATE account SET count = count + 1 WHERE account_no = (SELECT min(account_no) FROM account)".to_owned(),
         "UPDATE run SET input_blake3 = '0'".to_owned(),
+        "UPDATE certificate_compact SET verdict_no = 0, rsc_mm = 0, hinge_margin_cdeg = 0, shrink_milli = 1, limiting_at = 0 \
+         WHERE verdict_no = 10"
+            .to_owned(),
+        "DELETE FROM certificate_compact WHERE fid = 7".to_owned(),
+        "UPDATE certified_set SET settings = json_set(settings, '$.max_shift_m', 0.0)".to_owned(),
+        "UPDATE edge SET lane_width_m = lane_width_m + 0.5 WHERE fid = 9".to_owned(),
+        "UPDATE edge SET width_source = 'surveyed' WHERE fid = 9".to_owned(),
+        "UPDATE edge SET hgv = 'yes', motor_vehicle = 'yes'".to_owned(),
+        "UPDATE edge SET name = 'Elsewhere' WHERE fid = 9".to_owned(),
     ];
     let mut survivors = Vec::new();
     for sql in &changes {

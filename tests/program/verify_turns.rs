@@ -31,6 +31,11 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
         "UPDATE turn SET restriction = 'no_left_turn'".to_owned(),
         "DELETE FROM turn_plan".to_owned(),
         "UPDATE turn_plan SET coefficients = x'0000'".to_owned(),
+        "UPDATE turn_certificate_compact SET verdict_no = 0, rsc_mm = 0, hinge_margin_cdeg = 0, shrink_milli = 1 \
+         WHERE verdict_no = 10 AND path_no NOT NULL"
+            .to_owned(),
+        "DELETE FROM turn_certificate_compact WHERE fid = 5".to_owned(),
+        "DELETE FROM certified_turns".to_owned(),
     ];
     let bytes = made.read("demo.gpkg");
     let mut survivors = Vec::new();
