@@ -31,6 +31,12 @@ def run(program, *arguments):
 
 
 def engine(extract, work, name, customize=()):
+    partitioned(extract, work, name)
+    return customized(f"{work}/{name}", customize)
+
+
+def partitioned(extract, work, name):
+    """Makes the files of a graph that every vehicle can have a copy of."""
     folder = f"{work}/{name}"
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
@@ -42,6 +48,10 @@ def engine(extract, work, name, customize=()):
     # Otherwise OSRM moves a place on a small component to a large one, kilometres away.
     run("osrm-extract", "-p", f"{profiles}/hgv.lua", "--small-component-size", "1", f"{folder}/x.osm.pbf")
     run("osrm-partition", f"{folder}/x.osrm")
+
+
+def customized(folder, customize):
+    """An engine on the files of a folder, which `customize` changes."""
     run("osrm-customize", f"{folder}/x.osrm", *customize)
     return osrm.OSRM(storage_config=f"{folder}/x.osrm", algorithm="MLD", use_shared_memory=False)
 
@@ -88,6 +98,26 @@ def survey(permits, engine, pairs, plain=False):
     return dict(out, examples=examples[:5]), ways
 
 
+def second_vehicle(extract, work, tuned, files, judge):
+    """How many ways differ from those on fresh files, where another vehicle's table, with all segments closed that the vehicle may
+    use, was applied before: to another copy of the partitioned files, and to the same files."""
+    permits, pairs, expected = judge
+    closed = set(open(f"{tuned}/segment-speeds.csv").read().split())
+    opposite = f"{work}/opposite.csv"
+    with open(opposite, "w") as file:
+        file.writelines(f"{a},{b},0\n" for a, b in permits.over if f"{a},{b},0" not in closed)
+    partitioned(extract, work, "shared")
+    out = {}
+    for name, same_files in [("copy", False), ("same", True)]:
+        first, own = f"{work}/{name}-first", f"{work}/{name}-own"
+        shutil.copytree(f"{work}/shared", first)
+        customized(first, ["--segment-speed-file", opposite])
+        shutil.copytree(first if same_files else f"{work}/shared", own)
+        _, ways = survey(permits, customized(own, files), pairs)
+        out[name] = sum(a != b for a, b in zip(ways, expected, strict=True))
+    return out
+
+
 def main(extract, tables, tuned, rewritten, work, count):
     permits = Permits(extract, tables)
     pairs = permits.pairs(count, 5)
@@ -97,6 +127,7 @@ def main(extract, tables, tuned, rewritten, work, count):
         made = engine(from_file, work, name, customize)
         out[name], ways[name] = survey(permits, made, pairs, name == "plain")
         out[name]["probe"] = probe_osrm.probe(permits, partial(route, made))
+    out["second"] = second_vehicle(extract, work, tuned, files, (permits, pairs, ways["csv"]))
     json.dump({"pairs": pairs, **ways}, open(f"{work}/ways.json", "w"))
     print(json.dumps(out))
 

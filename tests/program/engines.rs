@@ -90,6 +90,8 @@ fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
     let answer = run(python, "run_osrm.py", &place, &["tables", "osrm", "permits.osm.pbf", "work", PAIRS]);
     keeps_to_permits(&answer, "plain", &["csv", "pbf"]);
     assert_eq!(answer["csv"]["examples"], Value::Array(Vec::new()), "{answer}");
+    assert_eq!(answer["second"]["copy"], 0, "a copy of the partitioned files is as good as fresh ones: {answer}");
+    assert_ne!(answer["second"]["same"], 0, "files that were customized before are not: {answer}");
     for name in ["csv", "pbf"] {
         keeps_closed(&answer[name]["probe"]);
     }
