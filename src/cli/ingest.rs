@@ -18,7 +18,7 @@ use super::values::country_code;
 ///
 /// Every drivable road of the extract becomes directed edges. Each edge has one certificate per vehicle: safe, unsafe,
 /// forbidden by a tagged limit, or unknown; every verdict but safe comes with a reason. Unless options choose others,
-/// the vehicles are those of the extract's countries and a 3-trailer road train.
+/// the vehicles are those of the extract's countries.
 ///
 /// The database replaces an older one only when it is complete: a run that fails or is killed leaves the older one
 /// as it was. A file that netcert did not make is never overwritten.

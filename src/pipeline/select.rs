@@ -1,4 +1,4 @@
-//! Selects the vehicles of a run: the requested ones, or those of the extract's countries and a 3-trailer road train.
+//! Selects the vehicles of a run: the requested ones, or those of the extract's countries.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ const OWN_SHARE: f64 = 0.1;
 /// The vehicles to certify.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Selection {
-    /// The vehicles of the extract's countries, a 3-trailer road train, and the vehicles with these ids.
+    /// The vehicles of the extract's countries, and the vehicles with these ids.
     Region(Vec<String>),
     /// The vehicles with these ids.
     Ids(Vec<String>),

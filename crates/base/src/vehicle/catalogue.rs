@@ -148,13 +148,12 @@ impl Catalogue {
         self.vehicles.iter().filter(move |v| v.region == code)
     }
 
-    /// The vehicles that `ingest` certifies by default, in file order: those of the country's regions, and those that
-    /// are certified everywhere (a 3-trailer road train). `country` is ISO 3166-1 alpha-2, upper case.
+    /// The vehicles that `ingest` certifies by default, in file order: those of the country's regions. `country` is ISO 3166-1 alpha-2,
+    /// upper case.
     #[must_use]
     pub fn for_country(&self, regions: &Regions, country: [u8; 2]) -> Vec<&Vehicle> {
         let codes = regions.regions_for(country);
-        let wanted = |v: &&Vehicle| codes.contains(&v.region) || regions.everywhere().contains(&v.id);
-        self.vehicles.iter().filter(wanted).collect()
+        self.vehicles.iter().filter(|v| codes.contains(&v.region)).collect()
     }
 
     /// At most three similar ids. First come those whose id or name contains the typed text, then those that differ

@@ -24,7 +24,6 @@ pub struct Region {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Regions {
-    everywhere: Vec<String>,
     otherwise: Vec<String>,
     region: Vec<Region>,
     #[serde(skip)]
@@ -57,12 +56,6 @@ impl Regions {
     #[must_use]
     pub fn regions_for(&self, country: [u8; 2]) -> &[String] {
         self.by_country.get(&country).unwrap_or(&self.otherwise)
-    }
-
-    /// Ids of the vehicles that are certified in every country, in addition to those of the country's regions.
-    #[must_use]
-    pub fn everywhere(&self) -> &[String] {
-        &self.everywhere
     }
 
     /// All regions, in file order.
