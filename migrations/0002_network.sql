@@ -52,7 +52,8 @@ CREATE TABLE road (
 -- not. Limits are those of the way and of its nodes on this edge together. `min_radius_m` is NULL on a straight and
 -- where no corridor could be laid (then `centreline_deviation_m` is NULL too). `width_source` belongs to
 -- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy
--- vehicles; `cut`: the extract ends on it. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for
+-- vehicles; `cut`: the extract ends on it. `lane_shared`: a two-way road without a lane for each direction, so that the lane is the whole
+-- road, and oncoming traffic has to wait. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for
 -- some vehicle.
 CREATE TABLE edge (
     fid INTEGER PRIMARY KEY NOT NULL,
@@ -93,7 +94,8 @@ CREATE TABLE edge (
     narrowing_start INTEGER NOT NULL,
     narrowing_end INTEGER NOT NULL,
     rules TEXT,
-    open_when TEXT
+    open_when TEXT,
+    lane_shared BOOLEAN AS (coalesce(oneway = 'no' AND lane_width_m = carriageway_width_m, 0))
 );
 
 -- Places narrower than the cross section; an edge's are narrowing_start < narrowing_no <= narrowing_end. `vertex` counts

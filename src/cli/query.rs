@@ -144,7 +144,7 @@ impl Query {
             min_width_source: self.width_source,
             ..QueryOptions::new(&self.vehicle, set.policy)
         };
-        let head = self.head(set.policy, scope(vehicle.as_ref()));
+        let head = self.head(set.policy, scope(vehicle.as_ref()) + shared(set.policy));
         let mut totals = Totals::default();
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
@@ -226,6 +226,16 @@ fn scope(vehicle: Option<&Vehicle>) -> String {
         "`safe` holds within the model: the vehicle as defined{tracking}, on a road as wide as its width_source says; it \
          is no permit and says nothing of bridges or traffic."
     )
+}
+
+/// What the own lane is where a road has none.
+fn shared(policy: Policy) -> &'static str {
+    match policy {
+        Policy::Lane => {
+            " On a two-way road without a lane for each direction, the lane is the whole road and oncoming traffic has to wait."
+        }
+        Policy::Direction | Policy::Carriageway => "",
+    }
 }
 
 /// Metres of road by verdict, and metres of safe road by the source of its width.

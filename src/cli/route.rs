@@ -392,6 +392,12 @@ fn limited(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::i
     if destinations.is_empty() && times.is_empty() { Ok(()) } else { writeln!(out) }
 }
 
+/// What is missing at an obstacle, metres. At a turn it is a bound from below.
+fn missing(at: PartKind, m: f64) -> String {
+    let least = if matches!(at, PartKind::Turn { .. }) { "at least " } else { "" };
+    format!("{least}{m:.2} m")
+}
+
 fn blocked(
     out: &mut dyn Write,
     inputs: &RoutingInputs,
@@ -425,7 +431,7 @@ fn blocked(
             route::place(network, obstacle.at).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}")),
             how(network, obstacle.at).to_owned(),
             verdict,
-            obstacle.missing_m.filter(|m| *m < 100.0).map_or_else(String::new, |m| format!("{m:.2} m")),
+            obstacle.missing_m.filter(|m| *m < 100.0).map_or_else(String::new, |m| missing(obstacle.at, m)),
         ];
         let road = printable(&route::title(network, obstacle.at));
         table.row(own.into_iter().chain(relative.into_iter().flat_map(relative::words)).chain([road]));

@@ -28,6 +28,7 @@ pub fn json(e: &Explanation) -> Value {
             "title": road.title,
             "corridor": road.policy.name(),
             "width_source": road.width_source.map(WidthSource::name),
+            "lane_shared": road.lane_shared,
         })
     });
     let conflict = e.conflict.as_ref().map(

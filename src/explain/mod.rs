@@ -107,6 +107,8 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// Whether the lane is the whole road, which both directions share. Only under the policy of the own lane.
+    pub lane_shared: bool,
     /// The tags that open the road to a destination only.
     pub destination_tag: Option<String>,
     /// The map's line in driving direction.

@@ -39,7 +39,7 @@ pub fn words(e: &Explanation) -> Words {
             format!("unsafe: the swept bodies leave the {} by far at {:.0} m: {}", e.strip_name(), at(g), who(e, g))
         }
         (Verdict::Unsafe(UnsafeReason::Width), Some(g)) => {
-            format!("unsafe: {} m too narrow at {:.0} m: {}", needed(-rsc(g)), at(g), who(e, g))
+            format!("unsafe: {} m too narrow at {:.0} m: {}", lacks(g), at(g), who(e, g))
         }
         (Verdict::Unsafe(_), Some(g)) => format!("unsafe: {}", hinge_headline(e, g)),
         (Verdict::Safe, None) => "nothing was computed".to_owned(),
@@ -53,6 +53,10 @@ pub fn words(e: &Explanation) -> Words {
         (_, None) => Vec::new(),
     };
     reasons.extend(e.turn.as_ref().and_then(|turn| refused(&turn.refused)));
+    if e.road.as_ref().is_some_and(|road| road.lane_shared) {
+        reasons
+            .push("Both directions share the lane: it is the whole road, and oncoming traffic has to wait.".to_owned());
+    }
     reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
@@ -299,13 +303,19 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
     format!("{said}{on}")
 }
 
+/// What is missing, metres. In an area an RSC below 0 is a bound of it from below.
+fn lacks(g: &Geometry) -> String {
+    let least = if g.result.limiting.in_area { "at least " } else { "" };
+    format!("{least}{}", needed(-rsc(g)))
+}
+
 /// What the certificate says if something else decided the verdict.
 fn beside(e: &Explanation, g: &Geometry) -> String {
     let strip = e.strip_name();
     match () {
         () if !g.result.closes() => format!("Besides, {}.", hinge_headline(e, g)),
         () if g.result.too_narrow() => {
-            format!("Besides, the {strip} is {} m too narrow at {:.0} m: {}.", needed(-rsc(g)), at(g), who(e, g))
+            format!("Besides, the {strip} is {} m too narrow at {:.0} m: {}.", lacks(g), at(g), who(e, g))
         }
         () if !g.result.safe() => format!("Besides, {}.", hinge_headline(e, g)),
         () => format!(

@@ -10,8 +10,8 @@ pub fn through(network: &Network, edge: &Edge, vehicle: &Vehicle) -> bool {
     network.legal(edge).judge(vehicle, At::Always).permission != Permission::Restricted
 }
 
-/// The tag that opens an edge at the ends of a route only. `None` if it is open to through traffic or closed. Without a value it is one
-/// of [`DESTINATION_VALUES`]; see [`destination_words`].
+/// The tag that opens an edge at the ends of a route only. `None` if it is open to through traffic or closed. It may lack its value:
+/// see [`destination_words`].
 #[must_use]
 pub fn destination_tag(network: &Network, edge: &Edge, vehicle: &Vehicle) -> Option<String> {
     network.legal(edge).judge(vehicle, At::Always).destination

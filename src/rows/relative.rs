@@ -19,6 +19,8 @@ pub struct Standing {
     rsc_mm: Option<i64>,
     /// Whether every hinge and the steering lock are within their limits. A row that is `unsafe: width` may exceed them, too.
     hinges_hold: bool,
+    /// The shrink γ of the certificate, thousandths: the vehicle must stay within this share of its tracking tolerance.
+    shrink_milli: u16,
     /// Whether areas of junctions count there.
     in_area: bool,
 }
@@ -29,17 +31,21 @@ const ROUNDED_MM: i64 = 100;
 const ROUNDED_SHARE: i64 = 10;
 
 impl Standing {
-    /// Of a stored certificate: the RSC in metres, in whole millimetres, and the hinge margin in degrees.
+    /// Of a stored certificate: the RSC in metres, in whole millimetres, the hinge margin in degrees, and the shrink in whole thousandths
+    /// (`None`: 1).
     #[must_use]
-    pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>) -> Self {
+    pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>, shrink: Option<f64>) -> Self {
         let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).round() as i64);
-        Self { verdict, rsc_mm, hinges_hold: hinge_margin_deg.is_some_and(|margin| margin >= 0.0), in_area: false }
+        let hinges_hold = hinge_margin_deg.is_some_and(|margin| margin >= 0.0);
+        let shrink_milli = (shrink.unwrap_or(1.0) * 1000.0).round() as u16;
+        Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
     }
 
     /// Of a stored certificate as a row.
     #[must_use]
     pub fn of(certificate: &CertificateRow) -> Self {
-        Self::stored(certificate.verdict, certificate.rsc_m, certificate.hinge_margin_deg)
+        let CertificateRow { verdict, rsc_m, hinge_margin_deg, shrink, .. } = *certificate;
+        Self::stored(verdict, rsc_m, hinge_margin_deg, shrink)
     }
 
     /// Of a result at full precision. `verdict` is the verdict with law and map.
@@ -47,13 +53,14 @@ impl Standing {
     pub fn computed(verdict: Verdict, result: &SpanResult) -> Self {
         let rsc_mm = result.rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
         let hinges_hold = result.hinge_margin_rad.is_some_and(|margin| margin >= 0.0);
-        Self { verdict, rsc_mm, hinges_hold, in_area: false }
+        let shrink_milli = (result.shrink * 1000.0).round() as u16;
+        Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
     }
 
     /// Of what has no certificate.
     #[must_use]
     pub fn bare(verdict: Verdict) -> Self {
-        Self { verdict, rsc_mm: None, hinges_hold: false, in_area: false }
+        Self { verdict, rsc_mm: None, hinges_hold: false, shrink_milli: 1000, in_area: false }
     }
 
     /// The same on a turn, a passage, or a route over one: there areas of junctions count.
@@ -74,6 +81,13 @@ impl Standing {
         self.rsc_mm.map(|mm| mm + 1 + rounded(mm))
     }
 
+    /// The RSC, if it is a bound of what the vehicle needs beside a reference with this shrink. An RSC at a smaller shrink leaves less freedom to
+    /// steer, so it is no bound at a greater one. Where a body does not fit into an area, an RSC below 0 says what is missing at least.
+    fn comparable_mm(&self, shrink_milli: u16) -> Option<i64> {
+        let as_free = self.shrink_milli >= shrink_milli;
+        self.rsc_mm.filter(|&mm| as_free && !(self.in_area && mm < 0))
+    }
+
     /// Whether room alone decides here: access is lawful, and no hinge and no steering lock fails. Else there is nothing to compare.
     fn by_room(&self) -> bool {
         self.hinges_hold && matches!(self.verdict, Verdict::Safe | Verdict::Unsafe(UnsafeReason::Width))
@@ -83,7 +97,8 @@ impl Standing {
 /// The comparison of a vehicle with a reference on one edge, turn or route.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Relative {
-    /// RSC of the vehicle less RSC of the reference, metres, rounded to the safe side. `None` if either has none.
+    /// RSC of the vehicle less RSC of the reference, metres, rounded to the safe side. `None` if either has none, or if they are not
+    /// comparable: the vehicle's shrink is less than the reference's, or the vehicle does not fit into the area of a junction.
     pub relative_m: Option<f64>,
     /// Whether the vehicle needs no more room than the reference. It does not mean `safe`.
     pub as_reference: bool,
@@ -98,7 +113,10 @@ impl Relative {
     /// coarsely, and a decimetre or a tenth of it is deducted.
     #[must_use]
     pub fn between(vehicle: Standing, reference: Standing) -> Self {
-        let relative_mm = vehicle.rsc_mm.zip(reference.most_mm()).map(|(own, other)| own - other);
+        // Both are on the same road.
+        let vehicle = if reference.in_area { vehicle.in_area() } else { vehicle };
+        let own_mm = vehicle.comparable_mm(reference.shrink_milli);
+        let relative_mm = own_mm.zip(reference.most_mm()).map(|(own, other)| own - other);
         Self::new(relative_mm, vehicle.by_room() && reference.by_room())
     }
 
@@ -129,7 +147,7 @@ mod tests {
     const WIDTH: Verdict = Verdict::Unsafe(UnsafeReason::Width);
 
     fn standing(verdict: Verdict, rsc_m: f64) -> Standing {
-        Standing::stored(verdict, Some(rsc_m), Some(12.0))
+        Standing::stored(verdict, Some(rsc_m), Some(12.0), None)
     }
 
     fn said(vehicle: Standing, reference: Standing) -> (Option<f64>, bool) {
@@ -152,12 +170,30 @@ mod tests {
     #[test]
     fn what_a_reference_lacks_in_an_area_is_rounded_coarsely() {
         let turn = |rsc_m| standing(WIDTH, rsc_m).in_area();
-        assert_eq!(said(turn(-0.2), turn(-0.3)), (Some(-0.001), false));
-        assert_eq!(said(turn(-0.199), turn(-0.3)), (Some(0.0), true));
-        assert_eq!(said(turn(-1.8), turn(-2.0)), (Some(-0.001), false));
+        assert_eq!(said(turn(0.0), turn(-0.3)), (Some(0.199), true));
+        assert_eq!(said(turn(0.0), turn(-2.0)), (Some(1.799), true));
         // An RSC of 0 or more is not rounded so.
         assert_eq!(said(turn(0.301), turn(0.3)), (Some(0.0), true));
         assert_eq!(Relative::to_itself(turn(-0.3)).relative_m, Some(0.0));
+    }
+
+    #[test]
+    fn what_a_vehicle_lacks_in_an_area_is_at_least_that_and_is_not_compared() {
+        let turn = |rsc_m| standing(WIDTH, rsc_m).in_area();
+        assert_eq!(said(turn(-0.001), turn(-0.3)), (None, false));
+        assert_eq!(said(standing(WIDTH, -0.23), turn(-1.0)), (None, false));
+        assert_eq!(said(standing(WIDTH, -0.23), standing(WIDTH, -1.0)), (Some(0.769), true), "on an edge it is");
+    }
+
+    #[test]
+    fn a_vehicle_that_must_be_steered_more_exactly_is_not_compared() {
+        let at = |rsc_m, shrink| Standing::stored(Verdict::Safe, Some(rsc_m), Some(12.0), Some(shrink));
+        assert_eq!(said(at(0.5, 0.367), at(0.1, 1.0)), (None, false));
+        assert_eq!(said(at(0.5, 0.999), at(0.1, 1.0)), (None, false));
+        // At the reference's smaller shrink the vehicle has at least this much.
+        assert_eq!(said(at(0.5, 1.0), at(0.1, 0.367)), (Some(0.399), true));
+        assert_eq!(said(at(0.5, 0.367), at(0.1, 0.367)), (Some(0.399), true));
+        assert_eq!(Relative::to_itself(at(0.5, 0.367)).relative_m, Some(0.0));
     }
 
     #[test]
@@ -172,7 +208,7 @@ mod tests {
     #[test]
     fn without_both_rscs_there_is_no_comparison() {
         let (there, none) = (standing(Verdict::Safe, 1.0), Standing::bare(WIDTH));
-        let open = Standing::stored(WIDTH, Some(-1000.0), Some(-515.67));
+        let open = Standing::stored(WIDTH, Some(-1000.0), Some(-515.67), None);
         for (vehicle, reference) in [(there, none), (none, there), (none, none), (there, open), (open, there)] {
             assert_eq!(said(vehicle, reference), (None, false));
         }
@@ -192,9 +228,9 @@ mod tests {
             assert_eq!(said(standing(Verdict::Safe, 2.0), standing(verdict, 0.5)), (Some(1.499), false), "{verdict:?}");
         }
         // Where the road is too narrow, the reason is `width`, even if a hinge fails as well.
-        let folds = Standing::stored(WIDTH, Some(-0.1), Some(-0.01));
+        let folds = Standing::stored(WIDTH, Some(-0.1), Some(-0.01), None);
         assert_eq!(said(folds, standing(WIDTH, -0.5)), (Some(0.399), false));
-        assert_eq!(said(standing(WIDTH, -0.1), Standing::stored(WIDTH, Some(-0.5), None)), (Some(0.399), false));
+        assert_eq!(said(standing(WIDTH, -0.1), Standing::stored(WIDTH, Some(-0.5), None, None)), (Some(0.399), false));
     }
 
     #[test]

@@ -131,7 +131,7 @@ impl Database {
         read: fn(&SqliteRow) -> Sql<IndexedStanding>,
     ) -> Streamed<'_, IndexedStanding> {
         let sql = format!(
-            "SELECT fid, verdict_no, rsc_mm, hinge_margin_cdeg FROM {table} \
+            "SELECT fid, verdict_no, rsc_mm, hinge_margin_cdeg, shrink_milli FROM {table} \
              WHERE vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND corridor_no = ? ORDER BY fid"
         );
         self.streamed(sql, vehicle, policy, read)
@@ -148,11 +148,11 @@ impl Database {
     ) -> Result<Vec<RelativeCount>, StoreError> {
         let mut other = ReferenceReader::open(&self.session.path, reference.clone(), self.time)?;
         let mut beside = other.edges()?;
-        let sql = "SELECT c.fid, c.verdict_no, c.rsc_mm, c.hinge_margin_cdeg, e.length_m \
+        let sql = "SELECT c.fid, c.verdict_no, c.rsc_mm, c.hinge_margin_cdeg, c.shrink_milli, e.length_m \
                    FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
                    WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
                    ORDER BY c.fid";
-        let with_length = |row: &SqliteRow| Ok((standing(row)?, row.try_get::<f64, _>(4)?));
+        let with_length = |row: &SqliteRow| Ok((standing(row)?, row.try_get::<f64, _>(5)?));
         let mut counts: BTreeMap<_, RelativeCount> = BTreeMap::new();
         for row in self.streamed(sql.to_owned(), &set.vehicle_id, set.policy, with_length) {
             let ((edge, own), length_m) = row?;
@@ -176,7 +176,7 @@ fn standing(row: &SqliteRow) -> Sql<IndexedStanding> {
         Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
     };
     let verdict = verdict(row, 1, || format!("row {fid}"))?;
-    Ok((fid.saturating_sub(1), Standing::stored(verdict, parts(2, 1000.0)?, parts(3, 100.0)?)))
+    Ok((fid.saturating_sub(1), Standing::stored(verdict, parts(2, 1000.0)?, parts(3, 100.0)?, parts(4, 1000.0)?)))
 }
 
 /// The settings that differ, as `max_shift_m 1.5 and 0.0`.

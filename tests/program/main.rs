@@ -30,6 +30,7 @@ mod resume;
 mod route_cli;
 mod serve;
 mod settings;
+mod shared_lane;
 mod support;
 mod survey;
 mod tasks;

@@ -55,6 +55,10 @@ fn rows_stay_what_they_are_and_get_two_columns() {
             let both = millimetres(&row["rsc_m"]).zip(millimetres(&other["rsc_m"]));
             // At turns, what is missing is rounded by up to a decimetre or a tenth.
             let rounded = |mm: i64| if turns.is_empty() || mm >= 0 { 0 } else { (-mm / 10).max(100) };
+            // A vehicle that must be steered more exactly is not compared, nor one that does not fit round a turn.
+            let shrink = |row: &BTreeMap<String, String>| row["shrink"].parse::<f64>().unwrap_or(1.0);
+            let comparable = |own: i64| shrink(row) >= shrink(other) && (turns.is_empty() || own >= 0);
+            let both = both.filter(|(own, _)| comparable(*own));
             let relative = both.map(|(own, other)| own - other - 1 - rounded(other));
             assert_eq!(millimetres(&row["relative_m"]), relative, "{row:?}\n{other:?}");
             let by_room = |row: &BTreeMap<String, String>| {
@@ -276,7 +280,9 @@ fn exports_have_the_columns_and_open_nothing() {
             assert_eq!(row["as_reference"], queried[id]["as_reference"]);
             assert!(row["permitted"] != "true" || row["verdict"] == "safe", "{row:?}");
         }
-        assert!(exported.values().any(|row| row["as_reference"] == "true" && row["permitted"] == "false"));
+        // Round a turn a vehicle that does not fit is not compared.
+        let opened = exported.values().any(|row| row["as_reference"] == "true" && row["permitted"] == "false");
+        assert_eq!(opened, layer == "edges");
         let collection: Value = serde_json::from_str(&text(&format!("geojson/{layer}.geojson"))).unwrap();
         for feature in collection["features"].as_array().unwrap() {
             let row = &exported[feature["id"].as_str().unwrap()];

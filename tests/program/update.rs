@@ -24,7 +24,7 @@ fn osmium(place: &Place, arguments: &[&str]) -> Option<()> {
 }
 
 /// What SQLite's shell answers to a statement.
-fn sql(db: &Path, text: &str) -> String {
+pub(crate) fn sql(db: &Path, text: &str) -> String {
     let done = Command::new("sqlite3").arg(db).arg(text).output().expect("the sqlite3 program");
     assert!(done.status.success(), "{text}: {}", String::from_utf8_lossy(&done.stderr));
     String::from_utf8(done.stdout).unwrap()

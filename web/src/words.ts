@@ -79,7 +79,11 @@ function lower(text: string): string {
 }
 
 export const policyWords: Record<Policy, { name: string; meaning: string }> = {
-  lane: { name: "Own lane", meaning: "Every part of the vehicle stays in its own lane." },
+  lane: {
+    name: "Own lane",
+    meaning:
+      "Every part of the vehicle stays in its own lane. On a two-way road without lanes, it may use the whole road: oncoming traffic has to wait.",
+  },
   direction: { name: "Own direction", meaning: "It may use all lanes of its own direction." },
   carriageway: { name: "Whole road", meaning: "It may use all that is paved: oncoming traffic has to wait." },
 };

@@ -158,6 +158,13 @@ pub struct CrossSection {
 }
 
 impl CrossSection {
+    /// Whether the lane is the whole carriageway. On a two-way road both directions then share it.
+    #[must_use]
+    pub fn shares_lane(&self) -> bool {
+        let edges = |strip: Option<Strip>| strip.map(|strip| (strip.left_m, strip.right_m));
+        self.lane.is_some() && edges(self.lane) == edges(self.carriageway)
+    }
+
     /// The strip for a policy.
     #[must_use]
     pub fn strip(&self, policy: Policy) -> Option<Strip> {
