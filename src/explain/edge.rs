@@ -228,6 +228,13 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle)
         title: network.title(edge),
         policy,
         width_source: section.strip(policy).map(|strip| strip.source),
+        unreadable_widths: edge
+            .legal
+            .rules
+            .iter()
+            .flat_map(|rules| rules.unreadable_widths())
+            .map(str::to_owned)
+            .collect(),
         lane_shared: policy == Policy::Lane && road.oneway == Oneway::No && section.shares_lane(),
         destination_tag: destination_tag(network, edge, vehicle),
         line: network.positions(edge).collect(),

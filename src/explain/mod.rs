@@ -107,6 +107,8 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// The widths of the road that cannot be read, each as `key=value`.
+    pub unreadable_widths: Vec<String>,
     /// Whether the lane is the whole road, which both directions share. Only under the policy of the own lane.
     pub lane_shared: bool,
     /// The tags that open the road to a destination only.

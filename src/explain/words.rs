@@ -270,10 +270,15 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
 fn unknown(e: &Explanation, reason: UnknownReason) -> String {
     let on = on_road(e);
     let said = match (reason, &e.conflict) {
-        (UnknownReason::Width, _) => format!(
-            "unknown: no width of the {} can be derived: a tagged width cannot be read, or the lanes are for others",
-            e.strip_name()
-        ),
+        (UnknownReason::Width, _) => {
+            let unreadable = e.road.as_ref().map_or(&[][..], |road| &road.unreadable_widths);
+            let why = if unreadable.is_empty() {
+                "the lanes are for others, or the map says nothing that can be read".to_owned()
+            } else {
+                format!("{} cannot be read", unreadable.join(", "))
+            };
+            format!("unknown: no width of the {} can be derived: {why}", e.strip_name())
+        }
         (UnknownReason::Geometry, _) => {
             "unknown: the line on the map gives no corridor: too short, folded back on itself, \
                                          or too crooked for a smooth line within the tolerance"

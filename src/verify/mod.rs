@@ -165,16 +165,18 @@ pub fn verify(
         records.extend(missing_edges(&mut database, &network, &set)?);
         add(Kind::Edge, request.edges(&mut database, &network, (&set, &settings), stop)?);
         let has_turns = database.has_turns(&set.vehicle_id, set.policy)?;
-        if settings.turns && !has_turns {
-            let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
-            records.push(Complaint { malformed: true, detail });
+        if !has_turns && !settings.turns {
+            continue;
         }
+        let known = facts.take().filter(|(kerbs, _)| *kerbs == settings.kerbs);
+        let made = || (settings.kerbs.clone(), turn_facts(&network, &settings.kerbs));
+        let (_, facts) = facts.insert(known.unwrap_or_else(made));
         if has_turns {
-            let known = facts.take().filter(|(kerbs, _)| *kerbs == settings.kerbs);
-            let made = || (settings.kerbs.clone(), turn_facts(&network, &settings.kerbs));
-            let (_, facts) = facts.insert(known.unwrap_or_else(made));
             records.extend(missing_turns(&mut database, facts, &set)?);
             add(Kind::Turn, request.turns(&mut database, (&network, facts), (&set, &settings), stop)?);
+        } else if !facts.is_empty() {
+            let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
+            records.push(Complaint { malformed: true, detail });
         }
     }
     Ok(Verification { records, sets })

@@ -131,12 +131,18 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     let mut legal = LegalTags::default();
     let mut speed = SpeedTags::default();
     let mut section = SectionReader::default();
+    let mut unreadable = Vec::new();
     for &(key, value) in tags {
         basics.take(key, value, &mut notes);
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
         legal.take(key, value, &mut notes);
         speed.take(head, suffix, value, &mut notes);
-        section.take(head, suffix, value, &mut notes);
+        if !section.take(head, suffix, value, &mut notes) {
+            unreadable.push((key, value));
+        }
+    }
+    if !section.has_width() {
+        unreadable.iter().for_each(|&(key, value)| legal.take_unreadable_width(key, value));
     }
 
     if basics.area {

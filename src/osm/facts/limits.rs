@@ -120,6 +120,11 @@ pub(super) struct LegalTags<'t> {
 }
 
 impl<'t> LegalTags<'t> {
+    /// Takes a width of the road that cannot be read, so that people see it.
+    pub(super) fn take_unreadable_width(&mut self, key: &'t str, text: &'t str) {
+        self.rules.take_unreadable_width(key, text);
+    }
+
     /// Takes a tag if its key concerns limits, access or the direction of travel.
     pub(super) fn take(&mut self, key: &'t str, text: &'t str, notes: &mut Notes) {
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));

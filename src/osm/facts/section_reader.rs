@@ -37,12 +37,12 @@ pub(super) struct SectionReader {
 }
 
 impl SectionReader {
-    /// Takes a tag (key split at the first colon) if it concerns the cross section.
-    pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+    /// Takes a tag (key split at the first colon) if it concerns the cross section. Returns whether it can be read, if it is a width.
+    pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) -> bool {
         match head {
             "width" => match suffix {
-                "" => self.width(1, text, notes),
-                "carriageway" => self.width(0, text, notes),
+                "" => return self.width(1, text, notes),
+                "carriageway" => return self.width(0, text, notes),
                 "source" => self.origin(text),
                 _ => {
                     if let Some(lists) = self.lists_of(suffix) {
@@ -50,7 +50,7 @@ impl SectionReader {
                     }
                 }
             },
-            "est_width" if suffix.is_empty() => self.width(2, text, notes),
+            "est_width" if suffix.is_empty() => return self.width(2, text, notes),
             "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
             // `limits` reads the same tag as a limit, and notes it if it is unreadable.
             "maxwidth" if suffix == "physical" => {
@@ -83,6 +83,7 @@ impl SectionReader {
             }
             _ => {}
         }
+        true
     }
 
     pub(super) fn has_width(&self) -> bool {
@@ -95,10 +96,11 @@ impl SectionReader {
     }
 
     /// A width as mappers write it. Lists, ranges and approximations are no more than estimates.
-    fn width(&mut self, slot: usize, text: &str, notes: &mut Notes) {
+    fn width(&mut self, slot: usize, text: &str, notes: &mut Notes) -> bool {
         let exact = readable(text);
         self.put_width(slot, exact.or_else(|| least_of(text)), notes);
         self.estimated |= exact.is_none() && self.widths[slot].is_some();
+        self.widths[slot].is_some()
     }
 
     fn put_width(&mut self, slot: usize, metres: Option<f32>, notes: &mut Notes) {

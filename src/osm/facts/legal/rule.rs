@@ -20,6 +20,8 @@ pub(crate) enum About {
     Impassable,
     /// Open at some times of the year.
     Seasonal,
+    /// A width that cannot be read. It says nothing of the vehicle; it is kept so that people see why no width is known.
+    Width,
 }
 
 /// What a rule says.
@@ -82,6 +84,9 @@ pub(in crate::osm::facts) const OTHER_VEHICLES: [&str; 37] = [
     "tram",
     "wheelchair",
 ];
+
+/// Keys of widths, which become rules only where they cannot be read.
+const WIDTHS: [&str; 3] = ["width", "width:carriageway", "est_width"];
 
 /// Parts of keys that make a remark of a tag, or a matter of lanes.
 const REMARKS: [&str; 25] = [
@@ -162,6 +167,10 @@ fn one_line(text: &str) -> String {
 impl Rule {
     /// Reads a tag for a direction of travel. `None` if it is no rule, or none for this direction, or for vehicles that netcert does not have.
     pub(crate) fn read(key: &str, value: &str, side: Direction) -> Option<Self> {
+        if WIDTHS.contains(&key) {
+            let (text, says) = (format!("{key}={}", one_line(value)), Says::Plain(one_line(value)));
+            return Some(Self { text, about: About::Width, scope: Vec::new(), directed: false, says });
+        }
         let classes = Classes::builtin();
         let (mut about, mut scope): (Option<About>, Vec<String>) = (None, Vec::new());
         let (mut directed, mut conditional, mut lanes, mut strange) = (false, false, false, false);

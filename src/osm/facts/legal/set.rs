@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::rule::Rule;
+use super::rule::{About, Rule};
 use crate::osm::facts::Direction;
 
 /// The rules of one object, a way or a node. They are judged together: a more specific one may lift another.
@@ -139,6 +139,12 @@ impl RuleSet {
     /// The rules, each as `key=value`.
     pub fn rules(&self) -> impl Iterator<Item = &str> {
         self.groups().iter().flat_map(|group| &group.rules).map(|rule| rule.text.as_str())
+    }
+
+    /// The widths that cannot be read, each as `key=value`.
+    pub fn unreadable_widths(&self) -> impl Iterator<Item = &str> {
+        let widths = self.groups().iter().flat_map(|group| &group.rules).filter(|rule| rule.about == About::Width);
+        widths.map(|rule| rule.text.as_str())
     }
 
     /// The rules that say different things at different times, separated by semicolons.

@@ -48,6 +48,12 @@ impl<'t> RuleTags<'t> {
         }
     }
 
+    /// Takes a width of the road that cannot be read.
+    pub(in crate::osm::facts) fn take_unreadable_width(&mut self, key: &'t str, value: &'t str) {
+        self.tags.push((key, value));
+        self.needed = true;
+    }
+
     fn is_rule(&self, key: &str, value: &str) -> bool {
         [Direction::Forward, Direction::Backward].iter().any(|&side| Rule::read(key, value, side).is_some())
     }

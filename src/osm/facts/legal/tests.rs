@@ -570,6 +570,25 @@ fn public_holidays_decide_where_the_whole_country_has_them() {
 }
 
 #[test]
+fn a_width_that_cannot_be_read_is_kept_and_says_nothing_of_a_vehicle() {
+    let vehicle = vehicle("EU-SEMI16.5");
+    let unreadable = |text: &str| {
+        let legal = legal(text)[0].clone().unwrap();
+        let kept: Vec<String> =
+            legal.rules.iter().flat_map(|rules| rules.unreadable_widths()).map(str::to_owned).collect();
+        (kept.join(", "), words(legal.forbids(&vehicle)))
+    };
+    let said = |widths: &str, verdict: &str| (widths.to_owned(), verdict.to_owned());
+    assert_eq!(unreadable("width=50"), said("width=50", "open"));
+    assert_eq!(unreadable("width=ten | est_width=narrow"), said("est_width=narrow, width=ten", "open"));
+    assert_eq!(unreadable("width=50 | maxweight=7.5"), said("width=50", "forbidden/weight"));
+    assert_eq!(unreadable("width=50 | hgv=no"), said("width=50", "forbidden/hgv"));
+    // Another width is known.
+    assert_eq!(unreadable("width=50 | est_width=3"), said("", "open"));
+    assert_eq!(unreadable("width=3"), said("", "open"));
+}
+
+#[test]
 fn the_rule_is_named_with_what_it_allows_and_what_the_vehicle_has() {
     let vehicle = vehicle("EU-SEMI16.5");
     let judged = |text: &str| legal(text)[0].clone().unwrap().judge(&vehicle, At::Always);

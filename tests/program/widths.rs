@@ -1,4 +1,4 @@
-//! On a two-way road without a lane for each direction, the lane is the whole road, and the answers say so.
+//! What an answer says of widths: a lane that both directions share, and a tag that cannot be read.
 
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
@@ -35,4 +35,17 @@ fn a_lane_that_both_directions_share_is_told() {
         assert_eq!(told.contains("Both directions share the lane"), shared, "way {way}: {told}");
     }
     place.netcert("query --vehicle EU-SEMI16.5").succeeds().tells("the lane is the whole road");
+}
+
+#[test]
+fn a_width_that_cannot_be_read_is_named() {
+    let nodes =
+        [(1, 0.0), (2, 150.0)].map(|(id, east_m)| NodeRecord { id, place: place_of(east_m, 0.0), tags: Vec::new() });
+    let tags = [("highway", "residential"), ("width", "50")].map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let way = WayRecord { id: 1, refs: vec![1, 2], tags: tags.to_vec() };
+    let place = Place::empty().file("width.osm.pbf", write_extract(&nodes, &[way]));
+    place.netcert("ingest width.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
+    let edge = place.rows("EU-SEMI16.5")[0].edge_id;
+    place.netcert(&format!("explain {edge} --vehicle EU-SEMI16.5")).succeeds().shows("width=50 cannot be read");
+    place.netcert("verify --db demo.gpkg").succeeds();
 }
