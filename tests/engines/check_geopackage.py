@@ -35,7 +35,8 @@ def check(condition, *what):
 
 
 def columns_of(name):
-    return [row[1] for row in store.execute(f'PRAGMA table_info("{name}")')]
+    # With columns that are computed from others.
+    return [row[1] for row in store.execute(f'PRAGMA table_xinfo("{name}")')]
 
 
 def layer(name, has_lines):
