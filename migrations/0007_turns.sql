@@ -36,7 +36,7 @@ CREATE TABLE certified_turns (
 ) WITHOUT ROWID;
 
 -- As `certificate_compact`. `path_no`: which of the turn's reference paths it rests on. No numbers where one of the turn's edges
--- has the verdict already: then it is that edge's. `need_kerb_cm`: the least radius of the turn's own kerbs with which a turn that lacks
+-- has the verdict already: then it is that edge's. `unknown: time` replaces only `safe`, and keeps the numbers. `need_kerb_cm`: the least radius of the turn's own kerbs with which a turn that lacks
 -- room would be safe; `need_flare_cm`: if no radius helps, the width that the strip near the turn would need on both roads.
 CREATE TABLE turn_certificate_compact (
     vehicle_no INTEGER NOT NULL,

@@ -141,8 +141,8 @@ impl Region {
         Ok(Self { path: path.to_owned(), database: Database::open(path)?, roads: None })
     }
 
-    /// From now on, answers give the verdicts at this time, which is local time of the place. Without it, a road that is closed to the
-    /// vehicle at some times is `unknown: time`.
+    /// From now on, queries and routes give the verdicts at this time, which is local time of the place. Without it, a road that is closed to
+    /// the vehicle at some times is `unknown: time`. Explanations know no time.
     ///
     /// # Errors
     /// The file cannot be read.

@@ -219,6 +219,10 @@ fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
 
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {
     match row.certificate.verdict {
+        // With numbers that hold, a time makes it safe.
+        Verdict::Unknown(UnknownReason::Time) if row.certificate.follows(Verdict::Safe) == Verdict::Safe => {
+            Outcome::NotConfirmed(vec![finding("corridor", why)])
+        }
         Verdict::Unknown(_) | Verdict::Forbidden(_) => Outcome::Confirmed,
         _ => Outcome::NotConfirmed(vec![finding("corridor", why)]),
     }

@@ -125,8 +125,10 @@ fn tell(
         );
         writeln!(out, "\n{}", wrapped(&text, "  "))?;
     }
-    let scope = "Edges and turns are certified by themselves, whole routes are not: `netcert route` does that.";
-    writeln!(out, "\n{}", wrapped(scope, ""))
+    let time = inputs.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+    let scope =
+        format!("Edges and turns are certified by themselves, whole routes are not: `netcert route` does that.{time}");
+    writeln!(out, "\n{}", wrapped(&scope, ""))
 }
 
 fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
@@ -159,5 +161,5 @@ fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, componen
             },
         }));
     }
-    json!({"type": "FeatureCollection", "features": features})
+    json!({"type": "FeatureCollection", "at": inputs.at.map(|time| time.to_string()), "features": features})
 }

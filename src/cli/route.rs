@@ -143,6 +143,7 @@ impl Route {
             }
             Format::Geojson => {
                 let mut json = route::geojson(network, model, &answer)?;
+                json["at"] = inputs.at.map(|time| time.to_string()).into();
                 compared.iter().for_each(|compared| compared.add_to_geojson(&mut json));
                 writeln!(out, "{json}")?;
             }

@@ -49,6 +49,11 @@ pub(crate) struct RoutingInputs {
 }
 
 impl RoutingArgs {
+    /// Whether a time is given.
+    pub(crate) fn has_time(&self) -> bool {
+        self.at.is_some()
+    }
+
     /// Checks that a reference vehicle is there to be compared with.
     pub(crate) fn check(&self, relative: &RelativeArgs) -> anyhow::Result<()> {
         relative.check(&self.db.path()?, &self.vehicle, self.corridor)

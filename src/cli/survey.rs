@@ -77,6 +77,9 @@ enum Format {
 impl Survey {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let pairs = self.pairs.as_deref().map(read_pairs).transpose()?;
+        if self.inputs.has_time() {
+            bail!("--at: a survey looks for what lacks room at all times; leave the time out");
+        }
         let inputs = self.inputs.load(session, "survey")?;
         let found = self.find(&inputs, pairs, session)?;
         if let Some(path) = &self.sheet {

@@ -59,12 +59,14 @@ pub fn explain_turn(
     };
     stop.check()?;
     let best = made.as_ref().ok().and_then(|made| best_of(made, &[model], &settings.stet).pop().flatten());
-    let legal: Vec<Verdict> = [facts.movement.from, facts.movement.to]
-        .into_iter()
-        .chain(facts.through.iter().copied())
-        .filter_map(|edge| network.edges.get(edge as usize))
-        .filter_map(|edge| forbids(network, edge, model))
-        .collect();
+    let of = |edge: &u32| network.edges.get(*edge as usize);
+    let ends = [facts.movement.from, facts.movement.to];
+    let ends = ends.iter().filter_map(of).filter_map(|edge| forbids(network, edge, model));
+    // Of the edges between, rules count and room does not.
+    let between = facts.through.iter().filter_map(of);
+    let between = between
+        .filter_map(|edge| forbids(network, edge, model).or_else(|| network.legal(edge).forbids(&model.vehicle)));
+    let legal: Vec<Verdict> = ends.chain(between).collect();
     let time = Verdict::Unknown(UnknownReason::Time);
     let barred = legal
         .iter()
@@ -187,13 +189,18 @@ fn roads_that_decide(
     let mut conflict = None;
     for index in edges {
         let Some(edge) = network.edges.get(index as usize) else { continue };
-        let Some(verdict) = edge_verdict(network, index, model, settings, stop)? else { continue };
+        let ends = [facts.movement.from, facts.movement.to].contains(&index);
+        let rule = network.legal(edge).forbids(&model.vehicle).filter(|_| !ends);
+        let Some(verdict) =
+            rule.map_or_else(|| edge_verdict(network, index, model, settings, stop), |rule| Ok(Some(rule)))?
+        else {
+            continue;
+        };
         if verdict == own && !matches!(own, Verdict::Safe | Verdict::Unsafe(_)) && named.decides.is_none() {
             named.decides = Some(network.title(edge));
             conflict = Conflict::of(network, edge, &model.vehicle);
         }
         // The edges that a passage leads over need no certificates of their own.
-        let ends = [facts.movement.from, facts.movement.to].contains(&index);
         if ends && verdict != Verdict::Safe && matches!(own, Verdict::Safe | Verdict::Unsafe(_)) {
             named.refused.push((format!("{} (edge {})", network.title(edge), edge.id), verdict));
         }

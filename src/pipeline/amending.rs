@@ -48,11 +48,12 @@ pub(super) fn amendment<'a>(
     let mut touched = Touched::find(network, turns, &differences.edges, &differences.nodes);
     let others = (0_u32..).zip(turns_before.iter().zip(turns));
     touched.turns.extend(others.filter(|(_, (old, new))| !same_turn(&differences, old, new)).map(|(index, _)| index));
-    add_undone(&mut touched, network, known, sets);
     let most = MOST_TOUCHED.max((network.strokes.len() + turns.len()) / ONE_IN);
     if touched.strokes.len() + touched.turns.len() > most {
         return None;
     }
+    // What was not made before does not decide how the file is written.
+    add_undone(&mut touched, network, known, sets);
     let again = Again { network, facts: turns, touched: &touched };
     let measures = again.measures(settings, reporter);
     let made = again.sets(sets, reporter);

@@ -1,9 +1,10 @@
 //! The edges and movements that a vehicle may use, with verdict and RSC. A search starts from them.
 
 use super::graph::{Access, BARRED};
-use crate::network::{MovementKind, Movements};
+use crate::network::{MovementKind, Movements, Network};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
+use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
 
 /// The verdict on an edge or a movement.
@@ -62,6 +63,20 @@ impl Permits {
         };
         let passages = movements.passages().iter().map(|passage| turn(passage.from, passage.to)).collect();
         Self { settings, edges, movements: movements.all().iter().map(permit).collect(), passages }
+    }
+
+    /// Tells of edges and passages that lack room what the rules of the road say besides, which a database keeps for safe ones only. What a rule
+    /// may close is then no matter of room: no condition opens it.
+    pub(super) fn add_rules(&mut self, network: &Network, movements: &Movements, vehicle: &Vehicle) {
+        let rule = |edge: u32| network.legal(network.edges.get(edge as usize)?).forbids(vehicle);
+        let lacks = |permit: &Permit| matches!(permit.verdict, Verdict::Unsafe(_));
+        for (edge, permit) in (0..).zip(&mut self.edges).filter(|(_, permit)| lacks(permit)) {
+            permit.verdict = rule(edge).unwrap_or(permit.verdict);
+        }
+        let passages = movements.passages().iter().zip(&mut self.passages);
+        for (passage, permit) in passages.filter(|(_, permit)| lacks(permit)) {
+            permit.verdict = passage.through.iter().find_map(|&arc| rule(arc)).unwrap_or(permit.verdict);
+        }
     }
 
     /// The access to what is safe and breaks no restriction. Turning back on the road is barred.

@@ -84,7 +84,7 @@ impl Route {
         self.stretches(network, |edge| destination_tag(network, edge, vehicle))
     }
 
-    /// The stretches on roads that are closed to the vehicle at some times. A certified route has them only if it was asked for a time.
+    /// The stretches on roads that are closed to the vehicle at some times. A route has them only if it was asked for a time.
     #[must_use]
     pub fn only_at_times(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {
         self.stretches(network, |edge| {

@@ -69,7 +69,8 @@ impl Driver {
         vehicle: &Vehicle,
         set: &CertifiedSet,
     ) -> Result<Arc<Self>, NoDriver> {
-        let permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
+        let mut permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
+        permits.add_rules(&roads.network, &roads.movements, vehicle);
         Ok(Arc::new(Self { model: Model::new(vehicle)?, permits }))
     }
 }

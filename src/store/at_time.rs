@@ -1,8 +1,8 @@
 //! The verdicts at a time. A certificate has no clock: what is closed at some time is `unknown: time` in the file. A connection that is
 //! given a time sees instead what the rules say then.
 //!
-//! Only such rows differ, and only those whose numbers hold: an edge is then safe or forbidden, and a turn has what is worst of the edges
-//! that it leads over. What the time does not decide, such as a school holiday, stays `unknown: time`.
+//! Only such rows differ, and only those whose numbers hold: an edge becomes safe or forbidden, or stays `unknown: time` where the time does
+//! not decide, as on a school holiday. A turn is forbidden if one of its edges is, stays unknown if one does, and else is safe.
 //!
 //! Temporary views with the names of the tables hide these on the connection, so that every query sees the time. The file is not changed.
 
@@ -27,7 +27,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// What is closed at some times.
 const TIME: Verdict = Verdict::Unknown(UnknownReason::Time);
 
-/// The columns of both tables, and those of each.
+/// The columns of both tables, and those of each. Those that are computed for other programs are left out.
 const COLUMNS: &str = "vehicle_no, corridor_no, fid, rsc_mm, rsc_published_mm, hinge_margin_cdeg, shrink_milli, limiting_s_dm, \
                        limiting_at";
 const TABLES: [(&str, &str); 2] =
@@ -37,7 +37,7 @@ const TABLES: [(&str, &str); 2] =
 type Timed = FxHashMap<u32, (Legal, [u8; 2])>;
 
 impl Database {
-    /// From now on, queries of certificates give the verdicts at this time, which is local time of the place.
+    /// From now on, queries of certificates give the verdicts at this time, which is local time of the place. A second call sets another time.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -50,6 +50,10 @@ impl Database {
 }
 
 async fn set_time(c: &mut SqliteConnection, time: DateTime, rings: &Rings) -> Sql<()> {
+    for (table, _) in TABLES {
+        let drop = format!("DROP VIEW IF EXISTS temp.{table}; DROP TABLE IF EXISTS temp.{table}_at");
+        sqlx::raw_sql(AssertSqlSafe(drop)).execute(&mut *c).await?;
+    }
     let timed = timed(c).await?;
     let vehicles: Vec<(u32, String)> =
         sqlx::query_as("SELECT vehicle_no, definition FROM vehicle ORDER BY vehicle_no").fetch_all(&mut *c).await?;

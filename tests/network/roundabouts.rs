@@ -9,9 +9,13 @@ use crate::support::junctions::Drawn;
 use crate::support::roundabout::{RING, map};
 
 use geo::{Distance as _, Euclidean};
+use netcert::explain::explain_turn;
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
 use netcert::rows::TurnCertificate;
+use netcert::settings::Settings;
+use netcert::stet::Model;
+use netcert::stop::Stop;
 use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use oracle::draw::Draw;
@@ -240,6 +244,11 @@ fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
         let verdict = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap().conclusion.verdict;
         assert_eq!(verdict, expected, "arcs {on_the_ring:?}");
     }
+    let settings = Settings { policy: Policy::Carriageway, kerbs: drawn.params.kerbs.clone(), ..Settings::default() };
+    let model = Model::new(&catalogued("EU-SEMI16.5")).unwrap();
+    let told = explain_turn(&drawn.network, &over, &model, &settings, &Stop::never()).unwrap().explanation;
+    assert_eq!(told.verdict, Verdict::Unknown(UnknownReason::Limit));
+    assert!(told.turn.unwrap().decides.is_some(), "the arc is named");
 }
 
 #[test]

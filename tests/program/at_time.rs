@@ -123,6 +123,13 @@ fn a_route_at_a_time_says_where_it_is_open_at_times_only() {
         .shows("Closed to the vehicle at other times: Night Road")
         .shows("2026-12-01T08:00:00");
 
+    for (verb, more) in [("reach", ""), ("route", "--to 8.6150,49.4")] {
+        let line =
+            format!("{verb} --vehicle EU-SEMI16.5 --from 8.6010,49.4 {more} --at 2026-12-01T08:00 --format geojson");
+        assert_eq!(place.netcert(&line).succeeds().json()["at"], "2026-12-01T08:00:00", "{verb}");
+    }
+    place.netcert("survey --vehicle EU-SEMI16.5 --from 8.6010,49.4 --at 2026-12-01T08:00").fails().tells("--at: ");
+
     let answer = place.netcert(&format!("{route} --at 2026-12-01T23:00 --format json")).succeeds().json();
     assert!(answer["routes"].as_array().unwrap().is_empty());
     assert_eq!(answer["obstacles"][0]["verdict"], "forbidden");

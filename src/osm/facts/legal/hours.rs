@@ -14,8 +14,8 @@ use super::subject::At;
 #[derive(Clone)]
 pub(crate) struct Hours {
     text: String,
-    /// `None`: times that only people understand.
-    parsed: Option<Arc<OpeningHours>>,
+    /// What the text may mean, as [`readings`] has it. Empty: times that only people understand.
+    readings: Arc<[OpeningHours]>,
     /// Whether it asks for public holidays.
     holidays: bool,
     /// Whether it asks for school holidays or for the sun, which are not known here.
@@ -85,23 +85,24 @@ impl Hours {
         if !speaks_of_time {
             return None;
         }
-        let parsed = parse(text).or_else(|| parse(&shortened(text)));
+        let readings = Some(readings(text)).filter(|all| !all.is_empty()).unwrap_or_else(|| readings(&shortened(text)));
         let lower = text.to_ascii_lowercase();
         let asks = |words: &[&str]| lower.split(|c: char| !c.is_alphabetic()).any(|word| words.contains(&word));
         let (holidays, unknown) = (asks(&["ph"]), asks(&["sh", "sunrise", "sunset", "dawn", "dusk"]));
-        Some(Self { text: text.to_owned(), parsed: parsed.map(Arc::new), holidays, unknown })
+        Some(Self { text: text.to_owned(), readings: readings.into(), holidays, unknown })
     }
 
     /// Whether it holds at all times, or at none, if it is so plain.
     pub(crate) fn always(&self) -> Option<bool> {
-        let parsed = self.parsed.as_ref()?;
-        let expression = parsed.get_expression();
-        let kind = expression.is_constant().then(|| expression.rules.last().map(|rule| rule.kind))??;
-        match kind {
-            RuleKind::Open => Some(true),
-            RuleKind::Closed => Some(false),
-            RuleKind::Unknown => None,
-        }
+        let constant = |parsed: &OpeningHours| {
+            let expression = parsed.get_expression();
+            match expression.is_constant().then(|| expression.rules.last().map(|rule| rule.kind))?? {
+                RuleKind::Open => Some(true),
+                RuleKind::Closed => Some(false),
+                RuleKind::Unknown => None,
+            }
+        };
+        agreed(self.readings.iter().map(constant))
     }
 
     /// When it holds.
@@ -110,36 +111,58 @@ impl Hours {
         if let Some(always) = self.always() {
             return of(always);
         }
-        match (at, &self.parsed) {
-            (At::Time { time, country }, Some(parsed)) if !self.unknown => match self.state(parsed, time, country) {
-                Some(RuleKind::Open) => of(true),
-                Some(RuleKind::Closed) => of(false),
-                Some(RuleKind::Unknown) | None => Truth::Sometimes,
-            },
-            _ => Truth::Sometimes,
+        let At::Time { time, country } = at else { return Truth::Sometimes };
+        if self.unknown {
+            return Truth::Sometimes;
         }
+        let holds = |parsed: &OpeningHours| match self.state(parsed, time, country)? {
+            RuleKind::Open => Some(true),
+            RuleKind::Closed => Some(false),
+            RuleKind::Unknown => None,
+        };
+        agreed(self.readings.iter().map(holds)).map_or(Truth::Sometimes, of)
     }
 
     /// The state at a time. `Unknown` on a day that is a public holiday in a part of the country only.
     fn state(&self, parsed: &OpeningHours, time: DateTime, country: [u8; 2]) -> Option<RuleKind> {
         let naive = naive(time)?;
+        if !YEARS.contains(&time.year()) {
+            return None;
+        }
         if !self.holidays {
             return Some(parsed.state(naive).0);
         }
         let country: Country = std::str::from_utf8(&country).ok()?.parse().ok()?;
         let (holidays, regional) = (country.holidays(), country.holidays_regional());
-        // The list ends in some year.
-        holidays.get_public().first_after(naive.date() + chrono::Days::new(366))?;
+        // The list begins and ends in some year.
+        let (public, year) = (holidays.get_public(), chrono::Days::new(366));
+        public.first_after(naive.date() - year).filter(|day| *day < naive.date())?;
+        public.first_after(naive.date() + year)?;
         let context = Context::default().with_holidays(holidays).with_holidays_unknown(regional);
         Some(parsed.clone().with_context(context).state(naive).0)
     }
 }
 
-fn parse(text: &str) -> Option<OpeningHours> {
-    text.parse().ok()
+/// The years for which times are decided. Others are slips of the pen.
+const YEARS: std::ops::RangeInclusive<i16> = 1990..=2100;
+
+/// What all readings say. `None` if they differ, or if there are none.
+fn agreed(mut said: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+    let first = said.next()??;
+    said.all(|other| other == Some(first)).then_some(first)
 }
 
-/// The text with short names, and with holidays as a rule of their own.
+/// What a text may mean. `Mo-Fr, PH 06:00-22:00` is one rule to mappers, and two to the grammar: all of Monday to Friday, and holidays. After a
+/// semicolon a rule replaces the one before on its days, which ends what began the night before; as an addition it does not.
+fn readings(text: &str) -> Vec<OpeningHours> {
+    let joined = text.replace(", ", ",");
+    let mut texts = vec![text.to_owned(), joined.clone(), text.replace(';', ","), joined.replace(';', ",")];
+    texts.dedup();
+    let parsed: Option<Vec<OpeningHours>> = texts.iter().map(|text| text.parse().ok()).collect();
+    parsed.unwrap_or_default()
+}
+
+/// The text with short names.
 fn shortened(text: &str) -> String {
     let mut short = String::with_capacity(text.len());
     let mut word = String::new();
@@ -158,7 +181,7 @@ fn shortened(text: &str) -> String {
         word.clear();
         short.push(c);
     }
-    short.trim().replace(", ", ",").replace(",PH", "; PH").replace(",SH", "; SH")
+    short.trim().replace(", ", ",")
 }
 
 fn naive(time: DateTime) -> Option<chrono::NaiveDateTime> {

@@ -42,7 +42,8 @@ pub struct Judgement {
     /// `Unknown(Rule)` if a rule that is not understood may, `Unknown(Time)` if it is excluded at some times. `None`: nothing stands
     /// against it.
     pub verdict: Option<Verdict>,
-    /// Whether it may go through, or only to a destination here. `No` beside a verdict.
+    /// Whether it may go through, or only to a destination here, where it is not closed. `No` if it is forbidden, or if a plain limit stands
+    /// against it.
     pub permission: Permission,
     /// The tag that opens the road to a destination only: as `key=value` if it is a rule of a [`RuleSet`], else its keys.
     pub destination: Option<String>,
@@ -228,8 +229,8 @@ fn judge_rules(rules: &RuleSet, subject: &Subject<'_>) -> Judgement {
             worst = Some(finding);
         }
     }
+    let destination = by.filter(|_| permission == Permission::Restricted).map(|rule| rule.text.clone());
     let Some(judge::Finding { verdict, rule, limit }) = worst else {
-        let destination = by.filter(|_| permission == Permission::Restricted).map(|rule| rule.text.clone());
         return Judgement { permission, destination, ..Judgement::default() };
     };
     let (property, allowed) = limit.map_or((None, None), |(property, allowed)| (Some(property), allowed));
@@ -244,8 +245,8 @@ fn judge_rules(rules: &RuleSet, subject: &Subject<'_>) -> Judgement {
         .filter(|most| most.is_finite());
     Judgement {
         verdict: Some(verdict),
-        permission: Permission::No,
-        destination: None,
+        permission: if matches!(verdict, Verdict::Forbidden(_)) { Permission::No } else { permission },
+        destination: destination.filter(|_| !matches!(verdict, Verdict::Forbidden(_))),
         rule: Some(rule.text.clone()),
         allowed,
         has,

@@ -548,6 +548,46 @@ fn a_time_decides_what_time_decides() {
     assert_eq!([2, 12].map(|hour| words(backward.judge(&vehicle, at(hour)).verdict)), ["open", "forbidden/oneway"]);
 }
 
+/// What the grammar and mappers may read differently decides nothing.
+#[test]
+fn a_time_that_can_be_read_in_two_ways_decides_only_where_both_agree() {
+    let vehicle = vehicle("EU-SEMI16.5");
+    for (text, day, hour, expected) in [
+        // One rule to mappers; two to the grammar, the first of them all day.
+        ("hgv=no | hgv:conditional=yes @ (Mo-Fr, PH 06:00-22:00)", date(2026, 12, 2), 23, "unknown/time"),
+        ("hgv=no | hgv:conditional=yes @ (Mo-Fr, PH 06:00-22:00)", date(2026, 12, 2), 12, "open"),
+        // Friday's night goes on, though Saturday has a rule of its own.
+        ("hgv:conditional=no @ (Mo-Fr 22:00-06:00; Sa 20:00-06:00)", date(2026, 12, 5), 3, "unknown/time"),
+        ("hgv:conditional=no @ (Mo-Fr 22:00-06:00; Sa 20:00-06:00)", date(2026, 12, 5), 22, "forbidden/hgv"),
+        ("hgv:conditional=no @ (Mo-Fr 22:00-06:00; Sa 20:00-06:00)", date(2026, 12, 5), 12, "open"),
+        // Not all of Sunday, and holidays in the morning.
+        ("hgv=no | hgv:conditional=yes @ (Sunday,PH 08:00-10:00)", date(2026, 12, 6), 15, "forbidden/hgv"),
+        // A slip of the pen.
+        ("hgv:conditional=no @ (22:00-06:00)", date(1026, 12, 1), 23, "unknown/time"),
+        ("hgv:conditional=no @ (PH)", date(1991, 12, 25), 12, "unknown/time"),
+    ] {
+        let legal = legal(text)[0].clone().unwrap();
+        let at = At::Time { time: day.at(hour, 30, 0, 0), country: *b"DE" };
+        assert_eq!(words(legal.judge(&vehicle, at).verdict), expected, "{text} {day} {hour}");
+    }
+}
+
+#[test]
+fn a_road_to_a_destination_stays_one_where_it_is_closed_at_times() {
+    let vehicle = vehicle("EU-SEMI16.5");
+    for text in
+        ["hgv=destination | hgv:conditional=no @ (22:00-06:00)", "hgv=no | hgv:conditional=destination @ (06:00-22:00)"]
+    {
+        let judged = legal(text)[0].clone().unwrap().judge(&vehicle, At::Always);
+        assert_eq!(
+            (words(judged.verdict), judged.permission),
+            ("unknown/time".to_owned(), Permission::Restricted),
+            "{text}"
+        );
+        assert!(judged.destination.is_some_and(|tag| tag.contains("destination")), "{text}");
+    }
+}
+
 #[test]
 fn public_holidays_decide_where_the_whole_country_has_them() {
     let vehicle = vehicle("EU-SEMI16.5");
