@@ -10,7 +10,7 @@ use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke, destination_tag};
-use crate::osm::facts::{Oneway, Policy};
+use crate::osm::facts::{Oneway, Policy, RuleSet};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
@@ -228,13 +228,7 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle)
         title: network.title(edge),
         policy,
         width_source: section.strip(policy).map(|strip| strip.source),
-        unreadable_widths: edge
-            .legal
-            .rules
-            .iter()
-            .flat_map(|rules| rules.unreadable_widths())
-            .map(str::to_owned)
-            .collect(),
+        unreadable_widths: edge.legal.rules.iter().flat_map(RuleSet::unreadable_widths).map(str::to_owned).collect(),
         lane_shared: policy == Policy::Lane && road.oneway == Oneway::No && section.shares_lane(),
         destination_tag: destination_tag(network, edge, vehicle),
         line: network.positions(edge).collect(),

@@ -614,8 +614,7 @@ fn a_width_that_cannot_be_read_is_kept_and_says_nothing_of_a_vehicle() {
     let vehicle = vehicle("EU-SEMI16.5");
     let unreadable = |text: &str| {
         let legal = legal(text)[0].clone().unwrap();
-        let kept: Vec<String> =
-            legal.rules.iter().flat_map(|rules| rules.unreadable_widths()).map(str::to_owned).collect();
+        let kept: Vec<String> = legal.rules.iter().flat_map(RuleSet::unreadable_widths).map(str::to_owned).collect();
         (kept.join(", "), words(legal.forbids(&vehicle)))
     };
     let said = |widths: &str, verdict: &str| (widths.to_owned(), verdict.to_owned());
