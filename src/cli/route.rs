@@ -137,13 +137,17 @@ impl Route {
         match self.format {
             Format::Json => {
                 let mut json = route::json(network, model, &answer);
-                json["at"] = inputs.at.map(|time| time.to_string()).into();
+                if let Some(time) = inputs.at {
+                    json["at"] = time.to_string().into();
+                }
                 compared.iter().for_each(|compared| compared.add_to_json(&mut json));
                 writeln!(out, "{json:#}")?;
             }
             Format::Geojson => {
                 let mut json = route::geojson(network, model, &answer)?;
-                json["at"] = inputs.at.map(|time| time.to_string()).into();
+                if let Some(time) = inputs.at {
+                    json["at"] = time.to_string().into();
+                }
                 compared.iter().for_each(|compared| compared.add_to_geojson(&mut json));
                 writeln!(out, "{json}")?;
             }
