@@ -15,6 +15,7 @@ CREATE TABLE section (
 -- tagged with a value that could not be read, separated by commas. `rules`: rules that depend on the vehicle or the time, as
 -- `key=value` lines, one tagged object after the other with an empty line between; each begins with its direction of travel. Where there are
 -- rules, they alone decide on access and limits, and the other columns say what holds for a lorry in general. NULL: the others decide.
+-- `tags`: the tags behind limits, access and barriers as the map has them, `key=value` lines; with rules only those of barriers.
 CREATE TABLE legal (
     legal_no INTEGER PRIMARY KEY,
     max_height_m DOUBLE,
@@ -25,10 +26,11 @@ CREATE TABLE legal (
     unreadable_limits TEXT,
     hgv TEXT NOT NULL,
     motor_vehicle TEXT NOT NULL,
-    rules TEXT
+    rules TEXT,
+    tags TEXT
 );
 
--- One row per way.
+-- One row per way. `width_tags`: the tags of widths and lanes as the map has them, `key=value` lines.
 CREATE TABLE road (
     road_no INTEGER PRIMARY KEY,
     way_id INTEGER NOT NULL,
@@ -45,7 +47,8 @@ CREATE TABLE road (
     legal_forward INTEGER NOT NULL REFERENCES legal (legal_no),
     legal_backward INTEGER NOT NULL REFERENCES legal (legal_no),
     maxspeed_forward_kmh INTEGER,
-    maxspeed_backward_kmh INTEGER
+    maxspeed_backward_kmh INTEGER,
+    width_tags TEXT
 );
 
 -- One row per directed edge; `geom` runs in direction of travel. No geometry of this file has an envelope in its header. `edge_id` is stable from extract to extract, `fid` is
@@ -54,7 +57,7 @@ CREATE TABLE road (
 -- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy
 -- vehicles; `cut`: the extract ends on it. `lane_shared`: a two-way road without a lane for each direction, so that the lane is the whole
 -- road, and oncoming traffic has to wait. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for
--- some vehicle.
+-- some vehicle. `legal_tags` as `tags` in `legal`, with those of nodes on the edge; `width_tags` as in `road`.
 CREATE TABLE edge (
     fid INTEGER PRIMARY KEY NOT NULL,
     edge_id INTEGER NOT NULL,
@@ -95,6 +98,8 @@ CREATE TABLE edge (
     narrowing_end INTEGER NOT NULL,
     rules TEXT,
     open_when TEXT,
+    legal_tags TEXT,
+    width_tags TEXT,
     lane_shared BOOLEAN AS (coalesce(oneway = 'no' AND lane_width_m = carriageway_width_m, 0))
 );
 

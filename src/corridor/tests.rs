@@ -50,6 +50,8 @@ pub(crate) fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> 
             sections: [*section; 2],
             legal: Default::default(),
             max_speed_km_h: [None; 2],
+
+            width_tags: None,
         });
         n.edges.push(Edge {
             id: i as i64 + 1,

@@ -9,8 +9,8 @@ use super::tightest::{HingePlace, Place};
 use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
-use crate::network::{Edge, Network, Stroke, destination_tag};
-use crate::osm::facts::{Oneway, Policy, RuleSet};
+use crate::network::{Edge, Network, Road, Stroke, destination_tag};
+use crate::osm::facts::{Oneway, Policy, RuleSet, WidthSource};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
@@ -212,10 +212,24 @@ fn other_strips(
     strips
 }
 
+/// The tags behind a width of that source.
+fn width_tags(road: &Road, source: Option<WidthSource>) -> Vec<String> {
+    let behind = |line: &&str| {
+        let lanes = line.starts_with("lanes");
+        match source {
+            Some(WidthSource::Tagged | WidthSource::Estimated | WidthSource::Assumed) => !lanes,
+            Some(WidthSource::FromLanes) => true,
+            Some(WidthSource::Surveyed) | None => false,
+        }
+    };
+    road.width_tags.iter().flat_map(|lines| lines.lines()).filter(behind).map(str::to_owned).collect()
+}
+
 fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle) -> RoadFacts {
     let road = network.road(edge);
     let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
     let section = network.section(edge);
+    let width_source = section.strip(policy).map(|strip| strip.source);
     RoadFacts {
         edge_id: edge.id,
         way_id: road.way_id,
@@ -227,7 +241,9 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle)
         reference: text(road.reference),
         title: network.title(edge),
         policy,
-        width_source: section.strip(policy).map(|strip| strip.source),
+        width_source,
+        width_tags: width_tags(road, width_source),
+        narrowed_by: if edge.narrowings.is_empty() { Vec::new() } else { edge.legal.passage_tags() },
         unreadable_widths: edge.legal.rules.iter().flat_map(RuleSet::unreadable_widths).map(str::to_owned).collect(),
         lane_shared: policy == Policy::Lane && road.oneway == Oneway::No && section.shares_lane(),
         destination_tag: destination_tag(network, edge, vehicle),

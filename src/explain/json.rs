@@ -28,6 +28,8 @@ pub fn json(e: &Explanation) -> Value {
             "title": road.title,
             "corridor": road.policy.name(),
             "width_source": road.width_source.map(WidthSource::name),
+            "width_tags": road.width_tags,
+            "narrowed_by": road.narrowed_by,
             "lane_shared": road.lane_shared,
         })
     });

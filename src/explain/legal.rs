@@ -8,8 +8,8 @@ use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 /// A rule that forbids a vehicle or cannot be read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conflict {
-    /// The tag as `key=value` where it depends on the vehicle or the time. Else the tag's key, or the main key if several can set the same
-    /// limit. The strictest of them counts.
+    /// The tag as `key=value`. Where it is not known, as after a measurement, the key, or the main key if several can set the same limit.
+    /// The strictest of them counts.
     pub tag: String,
     /// The allowed value, in `unit`. `None` if the rule has no number or its number cannot be read.
     pub allowed: Option<f64>,
@@ -57,7 +57,7 @@ impl Conflict {
                 let (_, has, tag, unit, _) = dimensions.iter().find(unreadable)?;
                 Some(Self { tag: (*tag).to_owned(), allowed: None, has: *has, unit, surveyed: false })
             }
-            _ if edge.barred => rule("barrier"),
+            _ if edge.barred => rule(&legal.barrier_tag().unwrap_or_else(|| "barrier".to_owned())),
             _ => None,
         }
     }

@@ -107,6 +107,10 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// The tags behind the width under that policy, as the map has them: `key=value`.
+    pub width_tags: Vec<String>,
+    /// The tags of narrow places on the edge, such as `traffic_calming=choker`.
+    pub narrowed_by: Vec<String>,
     /// The widths of the road that cannot be read, each as `key=value`.
     pub unreadable_widths: Vec<String>,
     /// Whether the lane is the whole road, which both directions share. Only under the policy of the own lane.

@@ -57,6 +57,9 @@ pub fn words(e: &Explanation) -> Words {
         reasons
             .push("Both directions share the lane: it is the whole road, and oncoming traffic has to wait.".to_owned());
     }
+    if let Some(road) = e.road.as_ref().filter(|road| !road.narrowed_by.is_empty()) {
+        reasons.push(format!("The road has a narrow place: {}.", road.narrowed_by.join(", ")));
+    }
     reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
@@ -141,10 +144,12 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
 }
 
 fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String {
-    let source = match e.road.as_ref().and_then(|road| road.width_source) {
-        Some(source) => format!(" ({})", source_words(source)),
-        None => String::new(),
-    };
+    let source = e.road.as_ref().and_then(|road| {
+        let said = source_words(road.width_source?);
+        let tags = road.width_tags.join(", ");
+        Some(if tags.is_empty() { format!(" ({said})") } else { format!(" ({said}: {tags})") })
+    });
+    let source = source.unwrap_or_default();
     let nominally = if place.nominal_m >= 0.0 {
         format!("stays {:.2} m inside its edge", place.nominal_m)
     } else {
@@ -240,6 +245,9 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
         (ForbiddenReason::Access, ..) => {
             "forbidden: no through traffic of motor vehicles (access, vehicle or motor_vehicle = no or private)"
                 .to_owned()
+        }
+        (ForbiddenReason::Barrier, ..) if by_rule => {
+            format!("forbidden: a barrier on it stops heavy vehicles ({})", c.tag)
         }
         (ForbiddenReason::Barrier, ..) => "forbidden: a barrier on it stops heavy vehicles".to_owned(),
         (_, Some(allowed), Some(has)) => {

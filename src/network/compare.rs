@@ -73,6 +73,7 @@ fn same_edge((old, a): (&Network, u32), (new, b): (&Network, u32)) -> bool {
         sections,
         legal,
         max_speed_km_h: _,
+        width_tags: _,
     } = road;
     let narrow = |network: &Network, edge: &Edge| {
         let range = edge.narrowings.start as usize..edge.narrowings.end as usize;

@@ -211,6 +211,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         sections,
         legal: [facts.legal_forward.clone(), facts.legal_backward.clone()],
         max_speed_km_h: facts.max_speed_km_h,
+        width_tags: facts.width_tags.clone(),
     }
 }
 

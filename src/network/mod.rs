@@ -88,6 +88,8 @@ pub struct Road {
     pub legal: [Legal; 2],
     /// Lowest tagged speed limit for heavy vehicles along the node order, and against it, km/h. No verdict depends on it.
     pub max_speed_km_h: [Option<NonZeroU8>; 2],
+    /// The tags of widths and lanes as the map has them, `key=value` lines. People read them.
+    pub width_tags: Option<Box<str>>,
 }
 
 /// A directed edge of the network.

@@ -140,6 +140,10 @@ pub struct EdgeFacts {
     pub rules: Option<String>,
     /// Those that close or limit the edge at some times.
     pub open_when: Option<String>,
+    /// The tags behind limits, access and barriers as the map has them, `key=value` lines.
+    pub legal_tags: Option<String>,
+    /// The tags of widths and lanes as the map has them, `key=value` lines.
+    pub width_tags: Option<String>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }

@@ -168,7 +168,7 @@ async fn edges(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Optio
         let update = by.into_iter().fold(sqlx::query(sql), Query::bind);
         update.bind(edges.start() + 1).bind(edges.end() + 1).execute(&mut *c).await?;
     }
-    let (mut bulk, mut boxes) = (Bulk::new("edge", 39), Bulk::new("rtree_edge_geom", 5));
+    let (mut bulk, mut boxes) = (Bulk::new("edge", 41), Bulk::new("rtree_edge_geom", 5));
     for Changed { index, mut row, measured, road, ranges } in changed {
         let fid = i64::from(index) + 1;
         if !measured {

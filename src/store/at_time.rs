@@ -100,13 +100,13 @@ async fn set_time(c: &mut SqliteConnection, time: DateTime, rings: &Rings) -> Sq
 /// The edges whose rules depend on the time.
 async fn timed(c: &mut SqliteConnection) -> Sql<Timed> {
     let sql = "SELECT e.fid, r.country, e.max_height_m, e.max_weight_t, e.max_axle_load_t, e.max_length_m, e.max_width_m, \
-               e.unreadable_limits, e.hgv, e.motor_vehicle, e.rules FROM edge AS e JOIN road AS r ON r.road_no = e.road_no \
+               e.unreadable_limits, e.hgv, e.motor_vehicle, e.rules, e.legal_tags FROM edge AS e JOIN road AS r ON r.road_no = e.road_no \
                WHERE e.open_when NOT NULL";
     let mut sets = RuleSets::default();
     let rows = sqlx::query(sql).fetch_all(c).await?;
     let of = |row| -> Sql<_> {
         let fid: u32 = sqlx::Row::try_get(row, 0)?;
-        Ok((fid.saturating_sub(1), (network_read::legal(row, 2, 10, &mut sets)?, network_read::country(row, 1)?)))
+        Ok((fid.saturating_sub(1), (network_read::legal(row, 2, [10, 11], &mut sets)?, network_read::country(row, 1)?)))
     };
     rows.iter().map(of).collect()
 }

@@ -18,7 +18,7 @@ const SELECT: &str = "SELECT fid, edge_id, way_id, from_node, to_node, direction
                       length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
                       carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
                       max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
-                      barred, cut, geom, maxspeed_kmh, rules, open_when FROM edge";
+                      barred, cut, geom, maxspeed_kmh, rules, open_when, legal_tags, width_tags FROM edge";
 
 impl Database {
     /// Every edge, in order of the network.
@@ -78,6 +78,8 @@ fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
         cut: row.try_get(29)?,
         rules: row.try_get(32)?,
         open_when: row.try_get(33)?,
+        legal_tags: row.try_get(34)?,
+        width_tags: row.try_get(35)?,
         line: line(row, 30, || format!("edge {fid}"))?,
     })
 }

@@ -27,14 +27,14 @@ type Sql<T> = Result<T, sqlx::Error>;
 pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let sections = rows(c, "SELECT * FROM section ORDER BY section_no", |row| section(row, 1)).await?;
     let mut sets = RuleSets::default();
-    let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1, 9, &mut sets)).await?;
+    let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1, [9, 10], &mut sets)).await?;
     let mut strings = StringPool::default();
     let roads =
         rows(c, "SELECT * FROM road ORDER BY road_no", |row| road(row, &sections, &legals, &mut strings)).await?;
     let mut shapes = Vec::new();
     let edges = "SELECT fid, edge_id, road_no, from_node, to_node, direction, geom, shape_start, narrowing_start, \
                  narrowing_end, barred, cut, max_height_m, max_weight_t, max_axle_load_t, max_length_m, max_width_m, \
-                 unreadable_limits, hgv, motor_vehicle, rules FROM edge ORDER BY fid";
+                 unreadable_limits, hgv, motor_vehicle, rules, legal_tags FROM edge ORDER BY fid";
     let mut expected = 0;
     let edges = rows(c, edges, |row| {
         expected += 1;
@@ -166,8 +166,8 @@ fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<R
     Ok(Some(set))
 }
 
-/// Limits and access in a row: the limits from `column` on, the rules in the column `rules`.
-pub(super) fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut RuleSets) -> Sql<Legal> {
+/// Limits and access in a row: the limits from `column` on, the rules and the tags in the columns named.
+pub(super) fn legal(row: &SqliteRow, column: usize, [rules, tags]: [usize; 2], sets: &mut RuleSets) -> Sql<Legal> {
     let unreadable: Option<&str> = row.try_get(column + 5)?;
     let limit = |at: usize, name: &str| -> Sql<Limit> {
         if unreadable.is_some_and(|names| names.split(',').any(|other| other == name)) {
@@ -184,6 +184,7 @@ pub(super) fn legal(row: &SqliteRow, column: usize, rules: usize, sets: &mut Rul
         hgv: word(row, column + 6)?,
         motor_vehicle: word(row, column + 7)?,
         rules: rule_set(row, rules, sets)?,
+        tags: row.try_get::<Option<&str>, _>(tags)?.map(Into::into),
     })
 }
 
@@ -212,6 +213,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
         sections: [section(10)?, section(11)?],
         legal: [legal(12)?, legal(13)?],
         max_speed_km_h: [row.try_get(14)?, row.try_get(15)?],
+        width_tags: row.try_get::<Option<&str>, _>(16)?.map(Into::into),
     })
 }
 
@@ -246,7 +248,7 @@ fn edge(row: &SqliteRow, expected: i64, roads: usize, (shapes, sets): (&mut Vec<
         direction,
         shape: start..end as u32,
         narrowings: range(row, 8)?,
-        legal: legal(row, 12, 20, sets)?,
+        legal: legal(row, 12, [20, 21], sets)?,
         barred: row.try_get(10)?,
         cut: row.try_get(11)?,
     })

@@ -51,8 +51,8 @@ pub(super) struct Roads {
 
 impl Roads {
     pub(super) fn new() -> Self {
-        let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 10));
-        Self { sections, legals, bulk: Bulk::new("road", 16) }
+        let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 11));
+        Self { sections, legals, bulk: Bulk::new("road", 17) }
     }
 
     /// Writes the next road.
@@ -83,6 +83,7 @@ impl Roads {
         for limit in road.max_speed_km_h {
             bulk.add(limit);
         }
+        bulk.add(road.width_tags.as_deref());
         bulk.end_row(to).await
     }
 
@@ -130,7 +131,7 @@ async fn roads_and_edges(
 ) -> Sql<Written> {
     let mut of_roads = Roads::new();
     let mut current: Option<(u32, RoadRow)> = None;
-    let mut bulk = Bulk::new("edge", 39);
+    let mut bulk = Bulk::new("edge", 41);
     let mut narrowings = Narrowings::new();
     let mut ranges = Ranges::default();
     let mut written = Written { edges: 0, bounds: None };
@@ -215,6 +216,8 @@ pub(super) async fn write_edge(
     bulk.add(ranges.narrowings.end);
     bulk.add(edge.legal.rules.as_ref().map(RuleSet::text));
     bulk.add(edge.legal.open_when());
+    bulk.add(edge.legal.tags.as_deref());
+    bulk.add(road.road.width_tags.as_deref());
     bulk.end_row(to).await?;
     Ok(bounds)
 }
@@ -353,8 +356,8 @@ fn limits(legal: &Legal) -> [(Limit, &'static str); 5] {
     ]
 }
 
-/// The bits of limits and access, and the rules.
-type LegalKey = ([(u8, u32); 5], u8, u8, Option<RuleSet>);
+/// The bits of limits and access, the rules and the tags.
+type LegalKey = ([(u8, u32); 5], [u8; 2], Option<RuleSet>, Option<Box<str>>);
 
 fn legal_key(legal: &Legal) -> LegalKey {
     let key = |limit| match limit {
@@ -362,12 +365,15 @@ fn legal_key(legal: &Legal) -> LegalKey {
         Limit::At(value) => (1, value.to_bits()),
         Limit::Unreadable => (2, 0),
     };
-    (limits(legal).map(|(limit, _)| key(limit)), legal.hgv as u8, legal.motor_vehicle as u8, legal.rules.clone())
+    let permissions = [legal.hgv, legal.motor_vehicle].map(|permission| permission as u8);
+    let limits = limits(legal).map(|(limit, _)| key(limit));
+    (limits, permissions, legal.rules.clone(), legal.tags.clone())
 }
 
 fn add_legal(bulk: &mut Bulk, legal: &Legal) {
     add_limits(bulk, legal);
     bulk.add(legal.rules.as_ref().map(RuleSet::text));
+    bulk.add(legal.tags.as_deref());
 }
 
 fn add_limits(bulk: &mut Bulk, legal: &Legal) {

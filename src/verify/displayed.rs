@@ -39,6 +39,7 @@ fn wrong(network: &Network, edge: &Edge, facts: &EdgeFacts) -> Option<String> {
         // What nodes and barriers add is stricter than the road.
         ("limits, access and rules", road.legal[direction].merge(&edge.legal) == edge.legal),
         ("open_when", facts.open_when == edge.legal.open_when()),
+        ("width_tags", facts.width_tags.as_deref() == road.width_tags.as_deref()),
     ];
     if let Some((column, _)) = same.iter().find(|(_, same)| !same) {
         return Some((*column).to_owned());

@@ -61,6 +61,7 @@ fn road(way_id: i64, section: CrossSection) -> Road {
         sections: [section; 2],
         legal: Default::default(),
         max_speed_km_h: [None; 2],
+        width_tags: None,
     }
 }
 

@@ -19,6 +19,7 @@ mod export_formats;
 mod geopackage;
 mod gis;
 mod manoeuvres;
+mod named_tags;
 #[path = "../oracle/mod.rs"]
 mod oracle;
 mod overture;

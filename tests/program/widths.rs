@@ -1,4 +1,4 @@
-//! What an answer says of widths: a lane that both directions share, and a tag that cannot be read.
+//! What an answer says of widths: a lane that both directions share, the tags behind a width, and one that cannot be read.
 
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 

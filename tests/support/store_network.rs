@@ -57,6 +57,7 @@ fn add_way(network: &mut Network, way: u32) {
         sections: [section(way), section(way + 1)],
         legal: [legal(way), legal(way * 7 + 2)],
         max_speed_km_h: [NonZeroU8::new((way % 4 * 30) as u8), NonZeroU8::new((way % 3 * 50) as u8)],
+        width_tags: (way % 5 == 2).then(|| format!("width={}\nlanes=2", way % 8).into()),
     });
     // A position of a piece that was left out.
     network.shapes.extend((way % 9 == 7).then_some(LonLat { lon_e7: 1, lat_e7: 2 }));
@@ -150,6 +151,7 @@ fn legal(k: u32) -> Legal {
         rules: (k % 11 == 3)
             .then_some("forward\nhgv:conditional=no @ (22:00-06:00)\nmaxaxles=4\n\nforward\nhgv=no")
             .and_then(RuleSet::from_text),
+        tags: (k % 7 == 4).then(|| "hgv=no\nmaxweight=8 st".into()),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::SectionReader;
 use crate::osm::facts::speed::SpeedTags;
-use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts};
+use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, told};
 
 /// Every reason for which [`way_facts`] leaves a way out.
 pub const LEFT_OUT_REASONS: [&str; 6] = [NO_HIGHWAY, NOT_A_ROAD, NOT_IN_USE, AREA, MINOR_SERVICE, TRACK];
@@ -117,6 +117,16 @@ fn traffic(basics: &Basics<'_>, legal: &LegalTags<'_>, implied: bool, general: O
     if lorries == general { general } else { Oneway::No }
 }
 
+/// Whether a tag says how wide a road or its lanes are, or how many lanes there are. Its key is split at the first colon.
+fn is_width(head: &str, suffix: &str) -> bool {
+    match head {
+        "width" => suffix != "source",
+        "lanes" => matches!(suffix, "" | "forward" | "backward"),
+        "est_width" | "narrow" => suffix.is_empty(),
+        _ => false,
+    }
+}
+
 /// Reads the facts of a way from its tags.
 ///
 /// # Errors
@@ -132,11 +142,15 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     let mut speed = SpeedTags::default();
     let mut section = SectionReader::default();
     let mut unreadable = Vec::new();
+    let mut width_tags = String::new();
     for &(key, value) in tags {
         basics.take(key, value, &mut notes);
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
         legal.take(key, value, &mut notes);
         speed.take(head, suffix, value, &mut notes);
+        if is_width(head, suffix) {
+            told::add(&mut width_tags, key, value);
+        }
         if !section.take(head, suffix, value, &mut notes) {
             unreadable.push((key, value));
         }
@@ -187,6 +201,7 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
             legal_forward,
             legal_backward,
             max_speed_km_h: speed.km_h,
+            width_tags: (!width_tags.is_empty()).then(|| width_tags.into()),
             section,
         },
         name: basics.name,

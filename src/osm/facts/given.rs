@@ -52,6 +52,7 @@ impl GivenRoad {
             legal_forward,
             legal_backward,
             max_speed_km_h: self.max_speed_km_h,
+            width_tags: None,
             section: section.finish(self.traffic, false, false, notes),
         }
     }

@@ -208,6 +208,9 @@ impl<'t> LegalTags<'t> {
         let (motor_vehicle, hgv) = self.access.resolve(direction);
         let mut legal = Legal { hgv, motor_vehicle, ..self.limits[index].clone() };
         self.rules.add_to(&mut legal, direction, implied_oneway);
+        if legal.rules.is_none() {
+            legal.tags = self.rules.told(direction);
+        }
         legal
     }
 

@@ -26,6 +26,7 @@ mod section_reader;
 mod speed;
 #[cfg(test)]
 mod tests;
+mod told;
 mod value;
 mod widths;
 
@@ -208,6 +209,9 @@ pub struct Legal {
     /// What depends on the vehicle's class or on the time. Where there are rules, they alone decide, and the members above say what holds for
     /// a lorry in general.
     pub rules: Option<RuleSet>,
+    /// The tags behind limits, access and barriers as the map has them, `key=value` lines in order. Beside rules only those of barriers.
+    /// `None` where nothing is limited, or the source has no tags. People read them; no verdict depends on them.
+    pub tags: Option<Box<str>>,
 }
 
 /// Meaning of an access tag for a through journey. The stricter value is the greater.
@@ -244,6 +248,8 @@ pub struct WayFacts {
     pub legal_backward: Legal,
     /// Lowest tagged speed limit for heavy vehicles along the node order, and against it, km/h.
     pub max_speed_km_h: [Option<NonZeroU8>; 2],
+    /// The tags of widths and lanes as the map has them, `key=value` lines in the map's order. People read them; no width depends on them.
+    pub width_tags: Option<Box<str>>,
     /// Widths, lanes and kerb-side uses as tagged.
     section: section::SectionTags,
 }

@@ -2,10 +2,13 @@
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Direction, Limit, PointFacts, Tags, value};
+use crate::osm::facts::{Direction, Limit, PointFacts, Tags, told, value};
 
 /// Passable width of a choker or chicane without a tagged width, metres: one lane of a minor main road. Assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
+
+/// Keys that say how wide the passage at a node is.
+pub(super) const PASSAGE_KEYS: [&str; 5] = ["est_width", "maxwidth", "maxwidth:physical", "traffic_calming", "width"];
 
 /// Effect of a barrier on a lorry without further tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,6 +115,14 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
         Some(Barrier::Passable | Barrier::Height) => get("locked") == Some("yes") && !opened,
         None => false,
     };
+    let stops = barred || barrier == Some(Barrier::Height);
+    let behind = [("barrier", stops), ("locked", stops)];
+    let behind = behind.into_iter().chain(PASSAGE_KEYS.map(|key| (key, passage_m.is_some())));
+    let mut lines = String::new();
+    behind.filter(|row| row.1).filter_map(|(key, _)| Some((key, get(key)?))).for_each(|(key, value)| {
+        told::add(&mut lines, key, value);
+    });
+    legal.tags = told::merged(legal.tags.as_deref(), (!lines.is_empty()).then_some(lines.as_str()));
     let facts = PointFacts { legal, passage_m, barred };
     (facts != PointFacts::default()).then_some(facts)
 }

@@ -61,6 +61,7 @@ fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
     legal.insert("barred".to_owned(), json!(e.barred));
     legal.insert("rules".to_owned(), json!(e.rules));
     legal.insert("open_when".to_owned(), json!(e.open_when));
+    legal.insert("tags".to_owned(), json!(e.legal_tags));
     let members = json!({
         "edge_id": e.edge_id.to_string(),
         "feature_id": e.edge + 1,

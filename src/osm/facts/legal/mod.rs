@@ -9,11 +9,13 @@
 //! | `condition`, `hours` | conditions and their times |
 //! | `property` | what is compared of a vehicle |
 //! | `set` | the rules of a direction as they are kept and stored |
+//! | `named` | the tag behind a plain limit, access or a barrier |
 //! | `judge`, `outcomes` | rules and a vehicle make a verdict |
 
 mod condition;
 mod hours;
 mod judge;
+mod named;
 mod outcomes;
 mod property;
 mod rule;
@@ -23,7 +25,7 @@ mod tags;
 #[cfg(test)]
 mod tests;
 
-use super::{Direction, Legal, Limit, Permission};
+use super::{Direction, Legal, Limit, Permission, told};
 use crate::vehicle::{Member, Vehicle};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use property::{Property, SLACK};
@@ -45,9 +47,9 @@ pub struct Judgement {
     /// Whether it may go through, or only to a destination here, where it is not closed. `No` if it is forbidden, or if a plain limit stands
     /// against it.
     pub permission: Permission,
-    /// The tag that opens the road to a destination only: as `key=value` if it is a rule of a [`RuleSet`], else its keys.
+    /// The tag that opens the road to a destination only, as `key=value`; its keys if the tag is not known.
     pub destination: Option<String>,
-    /// The rule behind the verdict as `key=value`, if it is one of a [`RuleSet`].
+    /// The tag behind the verdict as `key=value`. `None` if it is not known.
     pub rule: Option<String>,
     /// What a limit of that rule allows, in `unit`.
     pub allowed: Option<f64>,
@@ -88,6 +90,7 @@ impl Legal {
             hgv: self.hgv.max(other.hgv),
             motor_vehicle: self.motor_vehicle.max(other.motor_vehicle),
             rules,
+            tags: told::merged(self.tags.as_deref(), other.tags.as_deref()),
         }
     }
 
@@ -143,6 +146,7 @@ impl Legal {
             max_height: height_m.map_or(self.max_height, Limit::At),
             max_weight: weight_t.map_or(self.max_weight, Limit::At),
             rules,
+            tags: self.tags_but(replaced),
             ..self.clone()
         }
     }
@@ -167,16 +171,17 @@ impl Legal {
         let lorry = vehicle.class().is_none_or(|class| class.member("hgv") != Member::No);
         let hgv = if lorry { self.hgv } else { Permission::Yes };
         let permission = self.motor_vehicle.max(hgv);
-        let closed = |reason| Judgement {
+        let closed = |reason, lorries| Judgement {
             verdict: Some(Verdict::Forbidden(reason)),
             permission: Permission::No,
+            rule: self.tag_of_access(lorries, Permission::No),
             ..Judgement::default()
         };
         if self.motor_vehicle == Permission::No {
-            return closed(ForbiddenReason::Access);
+            return closed(ForbiddenReason::Access, false);
         }
         if hgv == Permission::No {
-            return closed(ForbiddenReason::Hgv);
+            return closed(ForbiddenReason::Hgv, true);
         }
         let mut unreadable = None;
         for (limit, property, _) in plain_limits(self) {
@@ -185,7 +190,7 @@ impl Legal {
                 verdict: Some(verdict),
                 permission: Permission::No,
                 destination: None,
-                rule: None,
+                rule: self.tag_of_limit(property, limit),
                 allowed,
                 has: Some(size),
                 unit: property.unit(),
@@ -201,8 +206,9 @@ impl Legal {
             }
         }
         let restricted = (permission == Permission::Restricted).then(|| {
-            let keys = if hgv == Permission::Restricted { "hgv" } else { "access, vehicle or motor_vehicle" };
-            keys.to_owned()
+            let lorries = hgv == Permission::Restricted;
+            let keys = if lorries { "hgv" } else { "access, vehicle or motor_vehicle" };
+            self.tag_of_access(lorries, permission).unwrap_or_else(|| keys.to_owned())
         });
         unreadable.unwrap_or(Judgement { permission, destination: restricted, ..Judgement::default() })
     }

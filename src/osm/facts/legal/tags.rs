@@ -54,6 +54,11 @@ impl<'t> RuleTags<'t> {
         self.needed = true;
     }
 
+    /// The tags.
+    pub(super) fn tags(&self) -> &[(&'t str, &'t str)] {
+        &self.tags
+    }
+
     fn is_rule(&self, key: &str, value: &str) -> bool {
         [Direction::Forward, Direction::Backward].iter().any(|&side| Rule::read(key, value, side).is_some())
     }
