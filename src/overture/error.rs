@@ -54,9 +54,17 @@ pub enum Problem {
     /// A codec that the program lacks.
     #[error("{0}")]
     Codec(String),
-    /// A column is missing or has another type.
+    /// A column is missing, or one is of an older schema.
     #[error("{0}")]
     Schema(String),
+    /// A property has another type than in the schema.
+    #[error("the property {property} has another type than in Overture's schema: {detail}")]
+    Type {
+        /// Its path in the feature, such as `width_rules[0].value`.
+        property: String,
+        /// What was found there, and what was expected.
+        detail: String,
+    },
     /// Features of another kind.
     #[error("neither segments nor connectors: {0}")]
     OtherFeatures(String),
@@ -119,6 +127,7 @@ impl Problem {
             Self::Damaged(_) => "fetch the file again and compare its size",
             Self::Codec(_) => "write the file again with Snappy or Zstandard compression",
             Self::Schema(_) => "fetch a release of September 2024 or later, with all columns",
+            Self::Type { .. } => "correct it, or fetch the file from a release of Overture",
             Self::OtherFeatures(_) => "leave this file out; netcert reads segments and connectors",
             Self::Value(_) => "fetch the file again, or report the value to Overture",
             Self::Geometry(_) => {

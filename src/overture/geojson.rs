@@ -14,7 +14,8 @@ use super::error::{OvertureError, Place, Problem};
 /// A feature.
 #[derive(Deserialize)]
 pub(super) struct Feature {
-    pub(super) id: Option<String>,
+    #[serde(default)]
+    id: Value,
     #[serde(default)]
     pub(super) geometry: Value,
     #[serde(default)]
@@ -25,6 +26,25 @@ impl Feature {
     /// `segment` or `connector`.
     pub(super) fn kind(&self) -> &str {
         self.properties.get("type").and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// The same for messages, whatever stands there.
+    pub(super) fn kind_as_written(&self) -> String {
+        self.properties
+            .get("type")
+            .map_or_else(|| "the property type is missing".to_owned(), |kind| format!("type {kind}"))
+    }
+
+    /// The id.
+    ///
+    /// # Errors
+    /// It is missing or no text.
+    pub(super) fn id(&self) -> Result<String, Problem> {
+        match &self.id {
+            Value::String(id) => Ok(id.clone()),
+            Value::Null => Err(Problem::Value("a feature without id".to_owned())),
+            other => Err(Problem::Type { property: "id".to_owned(), detail: format!("it is {other}, and not text") }),
+        }
     }
 }
 
@@ -41,6 +61,10 @@ pub(super) fn each(
     let at = |place, (id, problem)| OvertureError { path: path.to_owned(), place, id, problem };
     match (done, failed) {
         (_, Some(failed)) => Err(at(Place::Feature(number), failed)),
+        // The text is JSON, but not of the form of features.
+        (Err(error), None) if error.is_data() => {
+            Err(at(Place::Feature(number), (None, Problem::Value(format!("no GeoJSON of features: {error}")))))
+        }
         (Err(error), None) => Err(at(Place::Feature(number), (None, Problem::Damaged(error.to_string())))),
         (Ok(()), None) => Ok(()),
     }

@@ -43,12 +43,16 @@ pub(super) fn of_json(geometry: &Value, wanted: &str) -> Result<Vec<LonLat>, Pro
         return Err(Problem::Geometry(format!("{kind} in place of {wanted}")));
     }
     let position = |value: &Value| match value.as_array().map(Vec::as_slice) {
-        Some([lon, lat, ..]) => place([lon, lat].map(|degrees| degrees.as_f64().unwrap_or(f64::NAN))),
+        Some([lon, lat, ..]) => match [lon.as_f64(), lat.as_f64()] {
+            [Some(lon), Some(lat)] => place([lon, lat]),
+            _ => Err(Problem::Geometry(format!("a position of {lon} and {lat}, which are not two numbers"))),
+        },
         _ => Err(Problem::Geometry("a position without two numbers".to_owned())),
     };
     let coordinates = geometry.get("coordinates").unwrap_or(&Value::Null);
     match (wanted, coordinates.as_array()) {
         ("LineString", Some(positions)) => positions.iter().map(position).collect(),
+        ("LineString", None) => Err(Problem::Geometry("coordinates that are no list".to_owned())),
         _ => Ok(vec![position(coordinates)?]),
     }
 }

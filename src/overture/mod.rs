@@ -21,8 +21,6 @@ mod turns;
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize as _;
-
 pub use account::Account;
 pub use error::{OvertureError, Place, Problem};
 pub use files::{hash, is_source};
@@ -80,7 +78,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
                     of_segments = true;
                     return Ok(());
                 }
-                other => return Err((feature.id.clone(), Problem::OtherFeatures(format!("type {other:?}")))),
+                _ => return Err((feature.id().ok(), Problem::OtherFeatures(feature.kind_as_written()))),
             }
             let (id, place) = id_and(feature, |feature| geometry::of_json(&feature.geometry, "Point"))?;
             connectors.add(place.first().map(|place| (Key::connector(&id), *place)).into_iter().collect());
@@ -99,8 +97,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
         let groups = table.each(|some: &mut Vec<(Option<Road>, Account)>, record| {
             let id = record.id.clone();
             let road = || {
-                let segment =
-                    record::Segment::deserialize(record.columns).map_err(|e| Problem::Schema(e.to_string()))?;
+                let segment = record::Segment::read(record.columns)?;
                 let places = geometry::line(&record.geometry)?;
                 made(Feature { id: record.id, places, segment }, &connectors)
             };
@@ -119,8 +116,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
             }
             let (id, (places, segment)) = id_and(feature, |feature| {
                 let places = geometry::of_json(&feature.geometry, "LineString")?;
-                let segment = record::Segment::deserialize(std::mem::take(&mut feature.properties));
-                Ok((places, segment.map_err(|e| Problem::Schema(e.to_string()))?))
+                Ok((places, record::Segment::read(std::mem::take(&mut feature.properties))?))
             })?;
             let (road, of_road) = made(Feature { id: id.clone(), places, segment }, &connectors)
                 .map_err(|problem| (Some(id), problem))?;
@@ -150,7 +146,7 @@ fn id_and<T>(
     mut feature: geojson::Feature,
     read: impl FnOnce(&mut geojson::Feature) -> Result<T, Problem>,
 ) -> Result<(String, T), (Option<String>, Problem)> {
-    let Some(id) = feature.id.take() else { return Err((None, Problem::Value("a feature without id".to_owned()))) };
+    let id = feature.id().map_err(|problem| (None, problem))?;
     match read(&mut feature) {
         Ok(value) => Ok((id, value)),
         Err(problem) => Err((Some(id), problem)),

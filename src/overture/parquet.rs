@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use serde_json::{Map, Value};
 
 use super::error::{OvertureError, Place, Problem};
+use super::record;
 
 /// Columns of segments that are read. The first ones must be there: without them a closed road would look open.
 const SEGMENT: [&str; 17] = [
@@ -156,9 +157,8 @@ fn check_geometry(geo: Option<&str>) -> Result<(), Problem> {
 fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
     let fields = schema.get_fields();
     let has = |name: &str| fields.iter().any(|field| field.name() == name);
-    if has("connector_ids") || has("road") {
-        let old = if has("road") { "road" } else { "connector_ids" };
-        return Err(Problem::Schema(format!("the column {old} is of an older schema, which netcert does not know")));
+    if let Some(old) = record::OLD.iter().find(|name| has(name)) {
+        return Err(record::old_schema(old));
     }
     let kind = if has("connectors") || has("class") { Kind::Segments } else { Kind::Connectors };
     let (wanted, needed): (&[&str], _) = match kind {
@@ -170,21 +170,29 @@ fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
     }
     let used: Vec<Arc<Type>> = fields.iter().filter(|field| wanted.contains(&field.name())).cloned().collect();
     for field in &used {
-        let right = match field.name() {
-            "id" | "class" | "subtype" | "subclass" => is_text(field),
-            "geometry" => field.is_primitive() && field.get_physical_type() == Physical::BYTE_ARRAY,
-            "names" => field.is_group(),
-            _ => field.is_group() && is_list(field),
+        let (right, expected) = match field.name() {
+            "id" | "class" | "subtype" | "subclass" => (is_text(field), "text"),
+            "geometry" => (field.is_primitive() && field.get_physical_type() == Physical::BYTE_ARRAY, "binary"),
+            "names" => (field.is_group() && !is_list(field), "an object"),
+            _ => (field.is_group() && is_list(field), "a list"),
         };
         if !right {
-            return Err(Problem::Schema(format!(
-                "the column {} has another type than in Overture's schema",
-                field.name()
-            )));
+            let detail = format!("it is {}, and not {expected}", type_name(field));
+            return Err(Problem::Type { property: field.name().to_owned(), detail });
         }
     }
     let damaged = |e: ParquetError| Problem::Damaged(e.to_string());
     Ok((kind, Type::group_type_builder(schema.name()).with_fields(used).build().map_err(damaged)?))
+}
+
+/// The type of a column, in words of the format.
+fn type_name(field: &Type) -> String {
+    match (field.get_basic_info().logical_type_ref(), field.is_group()) {
+        (Some(LogicalType::List), _) => "a list".to_owned(),
+        (None, true) => "an object".to_owned(),
+        (Some(logical), _) => format!("{logical:?}"),
+        (None, false) => field.get_physical_type().to_string(),
+    }
 }
 
 fn is_text(field: &Type) -> bool {
@@ -215,7 +223,8 @@ fn record(row: Row) -> Result<Record, Problem> {
     Ok(Record { id, geometry, columns: Value::Object(columns) })
 }
 
-/// A value as JSON. Bytes and times are in no member that is read.
+/// A value as JSON. No member that is read is a date, a time or a map in Overture's schema. Where one stands, it becomes a value that is not
+/// null, so a condition that is not known is not taken for none.
 fn value(field: Field) -> Value {
     match field {
         Field::Bool(value) => value.into(),
@@ -232,6 +241,16 @@ fn value(field: Field) -> Value {
         Field::Str(value) => value.into(),
         Field::Group(row) => row.into_columns().into_iter().map(|(name, field)| (name, value(field))).collect(),
         Field::ListInternal(list) => list.elements().iter().cloned().map(value).collect(),
-        _ => Value::Null,
+        Field::MapInternal(map) => {
+            map.entries().iter().map(|(key, field)| (key.to_string(), value(field.clone()))).collect()
+        }
+        // Some writers do not say that bytes are text.
+        Field::Bytes(bytes) => bytes.as_utf8().map_or_else(|_| bytes.data().into(), Value::from),
+        decimal @ Field::Decimal(_) => {
+            let text = decimal.to_string();
+            text.parse::<f64>().map_or_else(|_| text.into(), Value::from)
+        }
+        Field::Null => Value::Null,
+        other => other.to_string().into(),
     }
 }

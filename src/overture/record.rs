@@ -3,6 +3,9 @@
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde_json::Value;
+
+use super::error::Problem;
 
 /// A segment without id and geometry.
 #[derive(Debug, Default, Deserialize)]
@@ -22,6 +25,47 @@ pub(super) struct Segment {
     pub(super) road_surface: Option<Vec<IgnoredAny>>,
     pub(super) level_rules: Option<Vec<IgnoredAny>>,
     pub(super) destinations: Option<Vec<IgnoredAny>>,
+}
+
+impl Segment {
+    /// Reads the properties of a feature, or the columns of a row.
+    ///
+    /// # Errors
+    /// [`Problem::Type`] names the first property of another type. [`Problem::Schema`]: they are of a schema before September 2024.
+    pub(super) fn read(properties: Value) -> Result<Self, Problem> {
+        if let Some(old) = OLD.iter().find(|name| properties.get(name).is_some()) {
+            return Err(old_schema(old));
+        }
+        serde_path_to_error::deserialize(properties).map_err(|error| {
+            let property = error.path().to_string();
+            Problem::Type { property, detail: mismatch(&error.into_inner().to_string()) }
+        })
+    }
+}
+
+/// Properties that releases before September 2024 had in place of those of today.
+pub(super) const OLD: [&str; 2] = ["road", "connector_ids"];
+
+/// The error of a file that has one of them.
+pub(super) fn old_schema(name: &str) -> Problem {
+    Problem::Schema(format!("the property {name} is of an older schema, which netcert does not know"))
+}
+
+/// What serde says of a type, in plain words.
+fn mismatch(said: &str) -> String {
+    let Some((found, expected)) = said.strip_prefix("invalid type: ").and_then(|said| said.rsplit_once(", expected "))
+    else {
+        return said.to_owned();
+    };
+    let expected = match expected {
+        "f64" => "a number",
+        "a sequence" => "a list",
+        "a string" => "text",
+        // Only objects are left.
+        _ => "an object",
+    };
+    let found = found.replace("floating point `", "the number `").replace("integer `", "the number `");
+    format!("it is {found}, and not {expected}")
 }
 
 #[derive(Debug, Deserialize)]

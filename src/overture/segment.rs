@@ -19,6 +19,8 @@ const UNKNOWN_CLASS: &str = "unknown_class";
 /// Left out as in extracts: ways in car parks and to houses, tracks.
 const MINOR_SERVICE: &str = "minor_service";
 const TRACK: &str = "track";
+/// Noted: a stretch of a road that is left out like such a way.
+const MINOR_STRETCH: &str = "minor_service";
 
 /// A segment that is a road for heavy vehicles.
 #[derive(Debug)]
@@ -29,8 +31,8 @@ pub(super) struct Road {
     pub(super) name: Option<String>,
     /// Vertices at which rules change, ascending, without the ends.
     changes: Vec<usize>,
-    /// Facts and refs of the parts between them.
-    facts: Vec<(WayFacts, Option<String>)>,
+    /// Facts and refs of the parts between them. `None` for a part that is left out.
+    facts: Vec<Option<(WayFacts, Option<String>)>>,
     pub(super) transitions: Vec<Transition>,
     /// Vertices at which the road is cut: where rules change, and where a prohibited transition begins or ends.
     pub(super) cuts: Vec<usize>,
@@ -92,9 +94,14 @@ impl Road {
         let mut notes = Notes::default();
         let part = |pair: &[usize]| {
             let range = [line.share(pair[0]), line.share(pair[1])];
-            (rules.road(class, range).facts(&mut notes), rules.reference(range))
+            let minor = class == RoadClass::Service && rules.is_minor(range);
+            (!minor).then(|| (rules.road(class, range).facts(&mut notes), rules.reference(range)))
         };
         let facts: Vec<_> = bounds.windows(2).map(part).collect();
+        let minor = facts.iter().filter(|part| part.is_none()).count();
+        if minor > 0 {
+            account.noted(SEGMENT, MINOR_STRETCH, minor as u64);
+        }
         for note in notes.names() {
             account.noted(RULE, note, 1);
         }
@@ -105,12 +112,12 @@ impl Road {
         Ok(Some(Self { id: id.into(), key, line, name, changes, facts, transitions, cuts }))
     }
 
-    /// The parts of the road between its cuts: first and last vertex, and their facts.
+    /// The parts of the road between its cuts: first and last vertex, and their facts. Parts that are left out are not among them.
     pub(super) fn parts(&self) -> impl Iterator<Item = (usize, usize, &(WayFacts, Option<String>))> {
         let ends = self.cuts.iter().copied().chain([self.line.places.len() - 1]);
         std::iter::once(0).chain(self.cuts.iter().copied()).zip(ends).filter_map(|(from, to)| {
             let part = self.changes.partition_point(|change| *change <= from);
-            Some((from, to, self.facts.get(part)?))
+            Some((from, to, self.facts.get(part)?.as_ref()?))
         })
     }
 
@@ -143,8 +150,7 @@ fn class(segment: &Segment, rules: &Rules) -> Result<RoadClass, &'static str> {
         None | Some("unknown") => return Err(UNKNOWN_CLASS),
         Some(name) => given_class(name)?,
     };
-    let minor = matches!(segment.subclass.as_deref(), Some("parking_aisle" | "driveway"));
-    if class == RoadClass::Service && minor && !rules.open_to_lorries() {
+    if class == RoadClass::Service && rules.is_minor_throughout() {
         return Err(MINOR_SERVICE);
     }
     if class == RoadClass::Track && !rules.open_with_width() {

@@ -9,7 +9,7 @@ import json
 import sys
 
 from overture.schema.transportation import Connector, Segment
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 
 def check(condition, *what):
@@ -29,7 +29,10 @@ def features(name):
 connectors, segments = features("connector"), features("segment")
 models = {"connector": TypeAdapter(Connector), "segment": TypeAdapter(Segment)}
 for feature in [*connectors.values(), *segments.values()]:
-    models[feature["properties"]["type"]].validate_json(json.dumps(feature))
+    try:
+        models[feature["properties"]["type"]].validate_json(json.dumps(feature))
+    except ValidationError as error:
+        check(False, feature["id"], error)
 
 used = set()
 rules = transitions = 0

@@ -1,13 +1,13 @@
 #!/bin/sh
-# Makes target/engines/venv with the engines from PyPI and prints its python; or says in one line why not, and fails.
+# Makes target/engines/venv with the engines and Overture's models from PyPI and prints its python; or says in one line why not, and fails.
 # The wheels are for CPython 3.12 and newer.
 
 set -eu
 cd "$(dirname "$0")/../.."
 venv="${NETCERT_ENGINES:-target/engines}/venv"
-packages="osrm-bindings==26.10.0 pyvalhalla==3.9.1 osmium==4.3.2"
+packages="osrm-bindings==26.10.0 pyvalhalla==3.9.1 osmium==4.3.2 overture-schema==2.0.0"
 
-if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import osmium, osrm, valhalla' 2>/dev/null; then
+if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import osmium, osrm, valhalla, overture.schema.transportation' 2>/dev/null; then
     echo "$venv/bin/python"
     exit 0
 fi

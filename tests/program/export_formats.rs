@@ -1,5 +1,6 @@
 //! Reads exports to map formats with other programs and compares them with the CSV files.
 
+use crate::engines;
 use crate::support::program;
 use crate::support::python;
 
@@ -189,7 +190,7 @@ fn the_index_of_flatgeobuf_finds_what_a_look_at_every_line_finds() {
 
 #[test]
 fn duckdb_and_pyarrow_read_what_csv_says() {
-    let Some(python) = python::python("formats", &["duckdb", "pyarrow", "overture-schema"]) else { return };
+    let Some(python) = python::tables() else { return };
     let place = exported("geoparquet");
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_tables.py"));
@@ -197,13 +198,54 @@ fn duckdb_and_pyarrow_read_what_csv_says() {
     Answer::of("tables.py", &mut command).succeeds().shows("edges: ").shows("turns: ");
 }
 
-#[test]
-fn overture_s_own_models_take_what_is_written() {
-    let Some(python) = python::python("formats", &["duckdb", "pyarrow", "overture-schema"]) else { return };
-    let place = exported("overture");
+/// Overture's own models judge every feature of a folder. `None` if they are not installed.
+pub(crate) fn judged_by_models(place: &Place, folder: &str) -> Option<Answer> {
+    let python = engines::python()?;
     let mut command = Command::new(python);
-    command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_overture.py")).arg(place.path("overture"));
-    Answer::of("overture.py", &mut command).succeeds().shows("transitions");
+    command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_overture.py")).arg(place.path(folder));
+    Some(Answer::of("check_overture.py", &mut command))
+}
+
+#[test]
+fn overture_s_own_models_take_every_feature_that_is_written() {
+    let place = exported("overture");
+    let features = |file: &str| json(&place, file)["features"].as_array().unwrap().len();
+    let [segments, connectors] = ["overture/segment.geojson", "overture/connector.geojson"].map(features);
+    let Some(answer) = judged_by_models(&place, "overture") else { return };
+    answer.succeeds().shows(&format!("{segments} segments, {connectors} connectors")).shows("transitions");
+}
+
+/// Otherwise the test above says nothing.
+#[test]
+fn overture_s_own_models_refuse_what_the_schema_does_not_have() {
+    let place = exported("overture");
+    if judged_by_models(&place, "overture").is_none() {
+        return;
+    }
+    let whole = json(&place, "overture/segment.geojson");
+    let last = whole["features"].as_array().unwrap().len() - 1;
+    let wrong = [
+        ("class", serde_json::json!("boulevard")),
+        ("version", serde_json::json!(-1)),
+        ("width_rules", serde_json::json!([{"value": "wide"}])),
+        ("width_rules", serde_json::json!([{"value": 7.0, "between": [0.5, 0.25]}])),
+        ("speed_limits", serde_json::json!([{"max_speed": {"value": 50, "unit": "knots"}}])),
+        ("access_restrictions", serde_json::json!([{"access_type": "denied", "when": {"mode": ["tractor"]}}])),
+        ("connectors", serde_json::json!([])),
+        ("subclass_rules", serde_json::json!([{"value": "lane"}])),
+    ];
+    for (property, value) in wrong {
+        // The last feature: none is left out.
+        let mut changed = whole.clone();
+        let feature = &mut changed["features"][last];
+        feature["properties"][property] = value.clone();
+        let id = feature["id"].as_str().unwrap().to_owned();
+        std::fs::write(place.path("overture/segment.geojson"), changed.to_string()).unwrap();
+        let answer = judged_by_models(&place, "overture").unwrap();
+        answer.tells(&format!("refused: {id} ")).tells(property);
+    }
+    std::fs::write(place.path("overture/segment.geojson"), whole.to_string()).unwrap();
+    judged_by_models(&place, "overture").unwrap().succeeds();
 }
 
 /// Every edge by way, end nodes in direction of travel and heading: the same fields that name it in CSV.

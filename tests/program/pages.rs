@@ -134,8 +134,8 @@ fn drawn() -> Vec<u8> {
 fn folder_of(need: &str) -> Option<PathBuf> {
     let beside = |python: &Path| python.parent().map(Path::to_owned);
     match need {
-        "osrm-bindings" | "pyvalhalla" => beside(engines::python()?),
-        "duckdb" | "overture-schema" => beside(&python::python("formats", &["duckdb", "pyarrow", "overture-schema"])?),
+        "osrm-bindings" | "pyvalhalla" | "overture-schema" => beside(engines::python()?),
+        "duckdb" => beside(&python::tables()?),
         "pgrouting" => engines::pgrouting().then(|| folder_of("psql"))?,
         program => {
             let path = std::env::var_os("PATH")?;

@@ -4,6 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
+/// The interpreter of the environment that reads and writes tables.
+pub(crate) fn tables() -> Option<PathBuf> {
+    python("tables", &["duckdb", "pyarrow"])
+}
+
 /// The interpreter of the environment with this name. If it cannot be made, prints why and returns `None`.
 pub(crate) fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());

@@ -26,6 +26,8 @@ pub(super) struct Rules {
     speeds: Vec<(Range, [bool; 2], NonZeroU8)>,
     widths: Vec<(Range, f64)>,
     links: Vec<Range>,
+    /// Stretches that lead to a house or along parking spaces.
+    minor: Vec<Range>,
     /// Stretches that are not in use.
     closed: Vec<Range>,
     refs: Vec<(Range, String)>,
@@ -45,6 +47,7 @@ impl Rules {
     /// Reads the rules of a segment and counts each.
     pub(super) fn of(segment: &Segment, account: &mut Account) -> Self {
         let mut rules = Self { link: segment.subclass.as_deref() == Some("link"), ..Self::default() };
+        rules.minor.extend(segment.subclass.as_deref().is_some_and(is_minor).then_some([0.0, 1.0]));
         for rule in segment.access_restrictions.iter().flatten() {
             rules.add_access(rule, account);
         }
@@ -65,6 +68,11 @@ impl Rules {
             match (rule.value.as_deref(), range(rule.between.as_deref())) {
                 (Some("link"), Some(range)) => {
                     rules.links.push(range);
+                    account.kept(RULE, 1);
+                }
+                // Where its place is unknown, all of the segment is left out.
+                (Some(value), _) if is_minor(value) => {
+                    rules.minor.push(range_or_whole(rule.between.as_deref(), account));
                     account.kept(RULE, 1);
                 }
                 _ => account.left_out(RULE, "subclass", 1),
@@ -154,17 +162,25 @@ impl Rules {
     pub(super) fn changes(&self) -> Vec<f64> {
         let ranges = self.access.iter().chain(&self.buses).map(|rule| rule.0);
         let ranges = ranges.chain(self.speeds.iter().map(|rule| rule.0)).chain(self.widths.iter().map(|rule| rule.0));
-        let ranges = ranges.chain(self.links.iter().copied()).chain(self.closed.iter().copied());
+        let ranges = ranges.chain([&self.links, &self.minor, &self.closed].into_iter().flatten().copied());
         let mut changes: Vec<f64> = ranges.flatten().filter(|share| *share > 0.0 && *share < 1.0).collect();
         changes.sort_by(f64::total_cmp);
         changes.dedup();
         changes
     }
 
-    /// Whether some rule opens the road to heavy vehicles by name.
-    pub(super) fn open_to_lorries(&self) -> bool {
+    /// Whether a service road is a driveway or a parking aisle between two shares, and no rule there opens it to heavy vehicles by name. No
+    /// rule changes inside.
+    pub(super) fn is_minor(&self, part: Range) -> bool {
         let opens = |effect: &Effect| matches!(effect, Effect::Allow { rank: Rank::Lorry, .. });
-        self.access.iter().any(|(_, effect)| opens(effect))
+        self.minor.iter().any(|range| holds(*range, part))
+            && !self.access.iter().any(|(range, effect)| holds(*range, part) && opens(effect))
+    }
+
+    /// The same for every part of the segment.
+    pub(super) fn is_minor_throughout(&self) -> bool {
+        let shares: Vec<f64> = [0.0].into_iter().chain(self.changes()).chain([1.0]).collect();
+        shares.array_windows().all(|&part| self.is_minor(part))
     }
 
     /// Whether some rule opens the road to motor vehicles by name, and a width is known.
@@ -215,6 +231,11 @@ fn range_or_whole(between: Option<&[f64]>, account: &mut Account) -> Range {
         account.noted(RULE, "between_unreadable", 1);
         [0.0, 1.0]
     })
+}
+
+/// Whether a subclass is one that is left out, as the tags `service=driveway` and `service=parking_aisle` are.
+fn is_minor(subclass: &str) -> bool {
+    matches!(subclass, "driveway" | "parking_aisle")
 }
 
 /// Whether a rule holds on a part inside which no rule changes.
