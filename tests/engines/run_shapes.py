@@ -4,7 +4,7 @@
     python run_shapes.py run EXTRACT TABLES OSRM_EXPORT REWRITTEN VALHALLA_EXPORT WORK
 
 `make` draws the extract: a crossing of nine roads, two roads between the same two nodes, restrictions over ways (short and long), one
-against straight on, and a small roundabout whose first exits are too tight. `run` asks OSRM and Valhalla for ways between
+against straight on, a small roundabout whose first exits are too tight, and restrictions with several members. `run` asks OSRM and Valhalla for ways between
 all pairs of edges of a shape and prints one JSON object.
 """
 
@@ -24,7 +24,7 @@ ONE_WAY = {**ROAD, "oneway": "yes"}
 
 class Drawing:
     def __init__(self):
-        self.nodes, self.ways, self.relations, self.shape_of = {}, {}, {}, {}
+        self.nodes, self.ways, self.relations, self.shape_of, self.tags_of = {}, {}, {}, {}, {}
         # What restrictions forbid, as nodes in driving order from the last before the first step to the first after the last one.
         self.bans, self.shapes = [], 0
 
@@ -32,10 +32,11 @@ class Drawing:
         """Each stands 5 km from the one before."""
         self.shapes += 1
 
-    def node(self, x_m, y_m):
+    def node(self, x_m, y_m, tags=None):
         number = len(self.nodes) + 1
         x_m += 5000 * self.shapes
         self.nodes[number] = (LON + x_m * M / cos(radians(LAT)), LAT + y_m * M)
+        self.tags_of[number] = tags or {}
         return number
 
     def way(self, nodes, tags=ROAD):
@@ -57,12 +58,21 @@ class Drawing:
             beside = [self.ways[way][0][1 if self.ways[way][0][0] == via else -2] for way in (from_way, to_way)]
             self.bans.append([beside[0], via, beside[1]])
 
+    def ban_pairs(self, from_ways, via, to_ways, word):
+        """One restriction that bans every turn from one of the ways into another one."""
+        for from_way in from_ways:
+            for to_way in to_ways:
+                self.ban(from_way, via, to_way, word)
+                del self.relations[len(self.relations)]
+        members = [*(("w", way, "from") for way in from_ways), ("n", via, "via"), *(("w", way, "to") for way in to_ways)]
+        self.relations[len(self.relations) + 1] = (members, {"type": "restriction", "restriction": word})
+
     def write(self, path):
         if os.path.exists(path):
             os.remove(path)
         writer = osmium.SimpleWriter(path)
         for number, place in self.nodes.items():
-            writer.add_node(osmium.osm.mutable.Node(id=number, version=1, location=place))
+            writer.add_node(osmium.osm.mutable.Node(id=number, version=1, location=place, tags=self.tags_of[number]))
         for number, (nodes, tags) in self.ways.items():
             writer.add_way(osmium.osm.mutable.Way(id=number, version=1, nodes=nodes, tags=tags))
         for number, (members, tags) in self.relations.items():
@@ -78,6 +88,7 @@ def drawing():
         over_ways(d, ways, footways)
     straight_on(d)
     roundabout(d)
+    d.entries = [entries(d, several, word) for several, word in (("from", "no_entry"), ("to", "no_exit"))]
     return d
 
 
@@ -137,6 +148,27 @@ def roundabout(d):
         d.way([ring[12 * i], at(300, 90 * i)], {"highway": "residential"})
 
 
+def entries(d, several, word):
+    """A crossing of five roads: from three of them nobody enters the fourth, or from the fourth nobody goes into three."""
+    d.shape()
+    middle = d.node(0, 0)
+    arms = [d.way([middle, d.node(300 * cos(2 * pi * i / 5), 300 * sin(2 * pi * i / 5))]) for i in range(5)]
+    d.ban_pairs(*((arms[:3], middle, arms[3:4]) if several == "from" else (arms[3:4], middle, arms[:3])), word)
+    return d.shapes
+
+
+def missing(permits, drawn, found):
+    """Turns of the crossings of five roads that are permitted and not banned, and that an engine does not drive."""
+    out = []
+    for pair, way in found.items():
+        (a, b), shape = pair, drawn.shape_of[int(permits.edges[pair[0]]["way_id"])]
+        before, after = permits.edges[a]["nodes"], permits.edges[b]["nodes"]
+        if shape in drawn.entries and before[-1] == after[0] and permits.turns.get((a, b)):
+            banned = [before[-2], before[-1], after[1]] in drawn.bans
+            out += [pair] if way is None and not banned else []
+    return out
+
+
 def repeated(before, after):
     """Restrictions that were lost, and those that say what another one says."""
     def restrictions(path):
@@ -154,7 +186,7 @@ def repeated(before, after):
 def survey(permits, drawn, route):
     """All pairs of edges of a shape. `route` gives the nodes of a way and its two ends."""
     out = {"routed": 0, "none": 0, "refused_used": 0, "elsewhere": 0, "examples": []}
-    shapes = {}
+    shapes, all_found = {}, {}
     for edge, row in sorted(permits.edges.items()):
         if row["permitted"]:
             shapes.setdefault(drawn.shape_of[int(row["way_id"])], []).append(edge)
@@ -162,6 +194,7 @@ def survey(permits, drawn, route):
         for pair in [(a, b) for a in edges for b in edges if a != b]:
             asked = [permits.middle(edge) for edge in pair]
             found = route(pair, asked)
+            all_found[pair] = found
             if found is None:
                 out["none"] += 1
                 continue
@@ -171,6 +204,7 @@ def survey(permits, drawn, route):
             out["refused_used"] += bool(wrong)
             out["elsewhere"] += bool(elsewhere)
             out["examples"] = (out["examples"] + [[*pair, text] for text in (wrong + elsewhere)[:1]])[:5]
+    out["missing"] = missing(permits, drawn, all_found)
     return out
 
 

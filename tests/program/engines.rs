@@ -153,10 +153,44 @@ fn refusals_of_every_shape_are_obeyed_and_said_once() {
         assert_eq!(answer[name]["refused_used"], 0, "{answer}");
         assert_eq!(answer[name]["elsewhere"], 0, "{answer}");
     }
+    // A restriction with several `from` or `to` closes the turns that it means, and no other one.
+    for name in ["pbf", "valhalla"] {
+        assert_eq!(answer[name]["missing"], serde_json::json!([]), "{answer}");
+    }
     // Engines that have the same refusals in full go the same number of ways, but where Valhalla's are shortened.
     let routed = |name: &str| answer[name]["routed"].as_u64().unwrap();
     assert!(routed("pbf") > 500 && routed("valhalla") > routed("pbf") - 20, "{answer}");
     assert_eq!((&answer["lost"], &answer["repeated"]), (&0.into(), &0.into()), "{answer}");
+}
+
+#[test]
+fn engines_read_the_limits_of_exports_as_they_are_meant() {
+    let Some(python) = python() else { return };
+    let place = Place::empty();
+    let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
+    said(python, "run_limits.py", std::iter::once("make".into()).chain(files(&["signs.osm.pbf"])));
+    // A vehicle that is below every limit, so that what the engines read decides.
+    let vehicle = "--vehicle AGV-TUG4 --corridor carriageway --quiet";
+    place.netcert(&format!("ingest signs.osm.pbf {vehicle}")).succeeds();
+    for (target, out) in [("osm-pbf", "permits.osm.pbf"), ("valhalla", "valhalla")] {
+        place.netcert(&format!("export {target} {vehicle} --extract signs.osm.pbf --out {out}")).succeeds();
+    }
+    std::fs::create_dir(place.path("work")).unwrap();
+    let arguments = files(&["signs.osm.pbf", "permits.osm.pbf", "valhalla", "work"]);
+    let line = said(python, "run_limits.py", std::iter::once("run".into()).chain(arguments));
+    let answer: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(answer["signs"], 59, "{answer}");
+    for name in ["pbf", "valhalla"] {
+        assert_eq!(answer[name], serde_json::json!([]), "{answer}");
+    }
+    // The engines do misread the extract as it is.
+    let misread = |name: &str, sign: &str| answer[name].as_array().unwrap().iter().any(|found| found == sign);
+    assert!(misread("plain", "maxheight=12 ft way") && misread("plain", "maxheight=366 cm way"), "{answer}");
+    assert!(misread("plain_valhalla", "maxweight=20000 lbs way"), "{answer}");
+    for name in ["plain", "plain_valhalla"] {
+        assert!(misread(name, "maxheight=3,66 node"), "{answer}");
+    }
+    assert!(misread("plain_valhalla", "hgv:forward"), "{answer}");
 }
 
 #[test]

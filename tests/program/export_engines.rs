@@ -138,6 +138,28 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
     assert!(restrictions > 0);
 }
 
+/// Editors give new objects negative ids. Valhalla takes -5 for 2^64 - 5, and OSRM's tables cannot name it.
+#[test]
+fn an_extract_with_negative_ids_is_refused_with_a_way_out() {
+    let node = |id| NodeRecord { id, place: LonLat { lon_e7: id as i32 * 30_000, lat_e7: 0 } };
+    let way = |id, refs: &[i64]| {
+        let tags = vec![("highway".to_owned(), "primary".to_owned()), ("width".to_owned(), "14".to_owned())];
+        WayRecord { id, refs: refs.to_vec(), tags }
+    };
+    for (extract, named) in [
+        (write_extract(&[node(-5), node(1), node(2)], &[way(7, &[-5, 1, 2])]), "way 7 has the negative id -5"),
+        (write_extract(&[node(1), node(2)], &[way(-7, &[1, 2])]), "way -7 has the negative id -7"),
+    ] {
+        let place = Place::empty().file("drawn.osm.pbf", extract);
+        place.netcert("ingest drawn.osm.pbf --vehicle AU-SEMI19 --quiet").succeeds();
+        for target in ["osm-pbf", "valhalla", "osrm"] {
+            let line = format!("export {target} --vehicle AU-SEMI19 --extract drawn.osm.pbf --out out");
+            place.netcert(&line).fails().tells(named).tells("`osmium renumber`");
+            assert!(!place.files().iter().any(|file| file.starts_with("out")), "{:?}", place.files());
+        }
+    }
+}
+
 #[test]
 fn the_request_for_valhalla_lets_no_place_be_moved_to_another_road() {
     let place = Place::with_demo();

@@ -14,7 +14,7 @@ use osmpbfreader::osmformat::PrimitiveBlock;
 use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
-use crate::export::ways::{OnWay, Piece, WayEdges, ids};
+use crate::export::ways::{OnWay, Piece, WayEdges, check_ids, ids};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 use crate::scratch::Scratch;
@@ -97,14 +97,17 @@ impl Tables<'_, '_> {
             let road =
                 way.keys.iter().any(|&key| texts.get(key as usize).is_some_and(|key| KEYS.contains(&key.as_slice())));
             match on {
+                OnWay::Nothing if !road => {}
+                _ if let Err(detail) = check_ids("way", way.id(), &refs) => {
+                    return Err(self.source.extract_error(detail));
+                }
                 OnWay::Pieces(pieces) => self.pieces(&refs, &pieces)?,
                 OnWay::Unclear(edges) => {
                     self.unclear += 1;
                     edges.iter().try_for_each(|&edge| self.ends.push(edge, [0; 3]))?;
                     self.close(&refs, 0, refs.len().saturating_sub(1), [true; 2])?;
                 }
-                OnWay::Nothing if road => self.close(&refs, 0, refs.len().saturating_sub(1), [true; 2])?,
-                OnWay::Nothing => {}
+                OnWay::Nothing => self.close(&refs, 0, refs.len().saturating_sub(1), [true; 2])?,
             }
         }
         Ok(())

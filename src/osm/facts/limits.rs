@@ -4,7 +4,7 @@
 //! traffic" at most; the rules beside it decide ([`super::legal`]).
 
 use crate::osm::facts::access::{Access, is_access_key, permission};
-use crate::osm::facts::legal::RuleTags;
+use crate::osm::facts::legal::{REMARKS, RuleTags};
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::{Direction, Legal, Limit, Oneway, Permission, value};
 
@@ -50,6 +50,17 @@ impl Kind {
         })
     }
 
+    /// The kind of a tag that is a limit of the whole road at all times. The key may name a class or a direction, too, before or after:
+    /// `maxheight`, `maxweight:hgv`, `hgv:maxweight:forward`. Lists by lane, conditions and remarks (`source:maxheight`) are none.
+    #[must_use]
+    pub fn of_tag(key: &str) -> Option<Kind> {
+        let other = |part: &str| matches!(part, "lanes" | "conditional") || REMARKS.contains(&part);
+        if !key.contains("max") || key.split(':').any(other) {
+            return None;
+        }
+        key.split(':').find_map(Kind::of_key)
+    }
+
     /// The kind of a word in a condition, as in `no @ (weight>7.5)`.
     fn of_condition(word: &str) -> Option<Kind> {
         Some(match word {
@@ -73,7 +84,9 @@ impl Kind {
         }
     }
 
-    fn read(self, text: &str) -> Limit {
+    /// What a tag's value says, in metres or tonnes.
+    #[must_use]
+    pub fn read(self, text: &str) -> Limit {
         let number = match self {
             Kind::Weight | Kind::AxleLoad => value::tonnes,
             Kind::Height | Kind::Length | Kind::Width => value::metres,

@@ -87,6 +87,11 @@ impl<'a> Strings<'a> {
         Ok(())
     }
 
+    /// All texts that are UTF-8.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &'a str> {
+        self.texts.iter().copied().flatten()
+    }
+
     #[inline]
     pub(super) fn text(&self, index: u64, object: ObjectId) -> Result<&'a str, Problem> {
         let found = usize::try_from(index).ok().and_then(|i| self.texts.get(i));

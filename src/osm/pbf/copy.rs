@@ -1,17 +1,19 @@
 //! Reads an extract blob by blob, for programs that write it again with changes.
 //!
 //! The whole file is checked and hashed before the first blob. A blob with nodes only is recognised without decoding
-//! it, so it can be copied unchanged. One blob is in memory at a time.
+//! it, so it can be copied unchanged, unless its nodes may have limits. One blob is in memory at a time.
 
 use std::path::Path;
 
 use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock};
 use protobuf::Message;
 
+use super::block::Block;
 use super::error::{Problem, ReadError};
 use super::frame::{Frame, Kind, Source};
 use super::inflate::Inflater;
 use super::{header, nodes};
+use crate::osm::facts::LimitKind;
 
 /// An open extract.
 pub struct Blobs {
@@ -35,8 +37,8 @@ pub struct Blob {
 pub enum Contents {
     /// The file's header.
     Header(Box<HeaderBlock>),
-    /// Nodes only.
-    Nodes,
+    /// Nodes only. They are decoded if one of the texts is the key of a limit.
+    Nodes(Option<Box<PrimitiveBlock>>),
     /// Ways or relations, perhaps nodes as well.
     Block(Box<PrimitiveBlock>),
     /// No map data: to be copied.
@@ -101,7 +103,8 @@ impl Blobs {
                 return Ok(Contents::Header(Box::new(message(bytes, "OSMHeader")?)));
             }
             if nodes::only_nodes(bytes)? {
-                return Ok(Contents::Nodes);
+                let limits = Block::parse(bytes)?.strings.iter().any(|text| LimitKind::of_tag(text).is_some());
+                return Ok(Contents::Nodes(if limits { Some(Box::new(message(bytes, "OSMData")?)) } else { None }));
             }
             Ok(Contents::Block(Box::new(message(bytes, "OSMData")?)))
         };

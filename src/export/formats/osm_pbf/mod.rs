@@ -5,6 +5,8 @@
 //! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … for each of them, too |
 //! | a road that is not in the network | the tags of a road with both directions refused |
 //! | a direction that is permitted | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
+//! | a limit with a unit, a limit of a node on the road | a number in metres or tonnes on the road (`limits.rs`) |
+//! | a restriction with several `from` or `to` | a restriction for each pair of them |
 //! | a turn or passage that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…`; for Valhalla `restriction=no_…`, of turns both |
 //!
 //! The first part of a split way keeps the way's id, the others get ids from [`FIRST_NEW_ID`] on. Relations name the parts. Blobs
@@ -12,6 +14,7 @@
 //! besides the bit for each edge and turn that every export has.
 
 mod block;
+mod limits;
 mod refusals;
 mod relations;
 mod rewrite;

@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use osmpbfreader::osmformat::Relation;
 
 use super::block::{Spool, Texts};
-use super::relations::{Kind, Refused, refusal_word, refused};
+use super::relations::{Kind, Member, Refused, refusal_word, refused, set_members};
 use super::split::Cuts;
 use super::{FIRST_NEW_ID, Flavour};
 use crate::export::ways::ids;
@@ -102,6 +102,26 @@ impl<'s, 'r> Refusals<'s, 'r> {
                 self.said.insert((if self.flavour == Flavour::Hgv { HGV } else { key }, refused));
             }
         }
+    }
+
+    /// Adds a relation that says one turn of a restriction that says several, with its tags.
+    pub(super) fn one_of_several(
+        &mut self,
+        restriction: &Relation,
+        turn: &[Member],
+        texts: &mut Texts,
+    ) -> Result<(), ExportError> {
+        let mut one = restriction.clone();
+        set_members(&mut one, turn, texts);
+        self.hear(&one, texts);
+        let text = |number: &u32| String::from_utf8_lossy(texts.text(*number)).into_owned();
+        let mut tags: Vec<(String, String)> =
+            one.keys.iter().zip(&one.vals).map(|(key, value)| (text(key), text(value))).collect();
+        tags.push(("netcert:of".to_owned(), restriction.id().to_string()));
+        let tags: Vec<(&str, &str)> = tags.iter().map(|(key, value)| (&**key, &**value)).collect();
+        let id = self.next_id;
+        self.next_id += 1;
+        self.relations.relation(id, turn, &tags)
     }
 
     /// Writes all refusals, after the extract's own relations.
@@ -218,8 +238,6 @@ impl<'s, 'r> Refusals<'s, 'r> {
         self.relations.relation(id, members, &[("type", "restriction"), (key, word), ("netcert", "no")])
     }
 }
-
-type Member = (Kind, i64, &'static str);
 
 fn over(from: i64, via: i64, to: i64) -> [Member; 3] {
     [(Kind::WAY, from, "from"), (Kind::NODE, via, "via"), (Kind::WAY, to, "to")]

@@ -38,12 +38,7 @@ pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut T
         side && parts.is_some_and(|parts| parts.iter().filter(|part| meets(part, &via)).count() > 1)
     };
     if restriction && (0..ids.len()).any(loose) {
-        let was = texts.number(b"netcert:was:type");
-        for key in &mut relation.keys {
-            if texts.text(*key) == b"type" {
-                *key = was;
-            }
-        }
+        set_aside(relation, texts);
     }
     let (mut types, mut memids, mut roles_sid, mut last) = (Vec::new(), Vec::new(), Vec::new(), 0_i64);
     for (i, &id) in ids.iter().enumerate() {
@@ -63,6 +58,81 @@ pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut T
     }
     (relation.types, relation.memids, relation.roles_sid) = (types, memids, roles_sid);
     true
+}
+
+/// Makes a restriction none. Its refusals are written anew.
+pub(super) fn set_aside(relation: &mut Relation, texts: &mut Texts) {
+    let was = texts.number(b"netcert:was:type");
+    for key in &mut relation.keys {
+        if texts.text(*key) == b"type" {
+            *key = was;
+        }
+    }
+}
+
+/// A member: its kind, id and role.
+pub(super) type Member = (Kind, i64, &'static str);
+
+/// Gives a relation these members.
+pub(super) fn set_members(relation: &mut Relation, members: &[Member], texts: &mut Texts) {
+    (relation.types, relation.memids, relation.roles_sid) = (Vec::new(), Vec::new(), Vec::new());
+    let mut last = 0_i64;
+    for &(kind, id, role) in members {
+        relation.types.push(kind.into());
+        relation.memids.push(id.wrapping_sub(last));
+        relation.roles_sid.push(texts.number(role.as_bytes()) as i32);
+        last = id;
+    }
+}
+
+/// What a restriction says of turns, one by one: engines take one `from` and one `to` of it (seen with OSRM 26.10 and Valhalla 3.9.1).
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Turns {
+    /// It has one of each, or is no restriction.
+    AsItIs,
+    /// Members of one restriction for each turn.
+    Each(Vec<Vec<Member>>),
+    /// `only_…` into several roads, or too many turns: no relation says that.
+    NotToBeSaid,
+}
+
+/// The most turns that one restriction is divided into. No crossing has more.
+const MOST_TURNS: usize = 1000;
+
+/// The turns of a restriction. Each `from` is meant with each `to`, over each node, as ingest reads it.
+pub(super) fn turns_of(relation: &Relation, texts: &Texts) -> Turns {
+    if !value(relation, texts, "type").is_some_and(|kind| kind.starts_with(b"restriction")) {
+        return Turns::AsItIs;
+    }
+    let kinds = relation.types.iter().map(EnumOrUnknown::enum_value_or_default);
+    let (mut from, mut to, mut nodes, mut ways) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for ((kind, id), role) in kinds.zip(ids(&relation.memids)).zip(roles(relation, texts)) {
+        match (role.trim().to_ascii_lowercase().as_str(), kind) {
+            ("from", Kind::WAY) => from.push((kind, id, "from")),
+            ("to", Kind::WAY) => to.push((kind, id, "to")),
+            ("via", Kind::NODE) => nodes.push((kind, id, "via")),
+            ("via", Kind::WAY) => ways.push((kind, id, "via")),
+            _ => {}
+        }
+    }
+    let vias: Vec<Vec<Member>> = match nodes.len() {
+        // Ways are driven one after the other.
+        0 => vec![ways],
+        _ if !ways.is_empty() => vec![[nodes, ways].concat()],
+        _ => nodes.into_iter().map(|node| vec![node]).collect(),
+    };
+    let turns = from.len() * to.len() * vias.len();
+    if turns < 2 {
+        return Turns::AsItIs;
+    }
+    let only = relation.keys.iter().zip(&relation.vals).any(|(&key, &value)| {
+        texts.text(key).starts_with(b"restriction") && texts.text(value).trim_ascii_start().starts_with(b"only_")
+    });
+    if only && to.len() > 1 || turns > MOST_TURNS {
+        return Turns::NotToBeSaid;
+    }
+    let of_pair = |from: Member, to: Member| vias.iter().map(move |via| [&[from], via.as_slice(), &[to]].concat());
+    Turns::Each(from.iter().flat_map(|&from| to.iter().flat_map(move |&to| of_pair(from, to))).collect())
 }
 
 fn value<'t>(relation: &Relation, texts: &'t Texts, key: &str) -> Option<&'t [u8]> {
@@ -186,6 +256,35 @@ mod tests {
         assert_eq!(ids(&route.memids), [7, 5, 105, 106, 106, 105, 5]);
         let mut other = relation(&[(Kind::NODE, 5, ""), (Kind::WAY, 8, "")], &mut texts);
         assert!(!name_parts(&mut other, &splits, &mut texts));
+    }
+
+    #[test]
+    fn a_restriction_of_several_members_is_one_for_each_pair() {
+        let turns = |members: &[Member], word: &str| {
+            let mut texts = Texts::over(vec![Vec::new()]);
+            let mut relation = relation(members, &mut texts);
+            for (key, value) in [("type", "restriction"), ("restriction", word)] {
+                relation.keys.push(texts.number(key.as_bytes()));
+                relation.vals.push(texts.number(value.as_bytes()));
+            }
+            turns_of(&relation, &texts)
+        };
+        let (a, b) = ((Kind::WAY, 1, "from"), (Kind::WAY, 2, "from"));
+        let (c, d) = ((Kind::WAY, 3, "to"), (Kind::WAY, 4, "to"));
+        let via = (Kind::NODE, 9, "via");
+        assert_eq!(turns(&[a, b, via, c], "no_entry"), Turns::Each(vec![vec![a, via, c], vec![b, via, c]]));
+        assert_eq!(turns(&[a, via, c, d], "no_exit"), Turns::Each(vec![vec![a, via, c], vec![a, via, d]]));
+        let all = [[a, c], [a, d], [b, c], [b, d]].map(|[from, to]| vec![from, via, to]);
+        assert_eq!(turns(&[a, b, via, c, d], "no_exit"), Turns::Each(all.to_vec()));
+        let ways = [(Kind::WAY, 7, "via"), (Kind::WAY, 8, "via")];
+        let over = |from: Member| vec![from, ways[0], ways[1], c];
+        assert_eq!(turns(&[a, b, ways[0], ways[1], c], "no_entry"), Turns::Each(vec![over(a), over(b)]));
+        assert_eq!(turns(&[a, b, via, c], "only_straight_on"), Turns::Each(vec![vec![a, via, c], vec![b, via, c]]));
+        assert_eq!(turns(&[a, via, c, d], "only_straight_on"), Turns::NotToBeSaid);
+        assert_eq!(turns(&[a, via, c], "no_left_turn"), Turns::AsItIs);
+        assert_eq!(turns(&[a, b, via], "no_entry"), Turns::AsItIs);
+        let many: Vec<Member> = (0..40).flat_map(|id| [(Kind::WAY, id, "from"), (Kind::WAY, id, "to")]).collect();
+        assert_eq!(turns(&many, "no_exit"), Turns::NotToBeSaid);
     }
 
     #[test]

@@ -1,16 +1,17 @@
 //! Rewrites the extract in one pass: copies nodes, tags and splits ways, makes relations name the parts, and writes new objects
 //! after those of their kind.
 
-use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock, PrimitiveGroup, Way};
+use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock, PrimitiveGroup, Relation, Way};
 use protobuf::Message as _;
 
 use super::block::{Spool, Texts, write_blob, write_block};
+use super::limits::{NodeLimits, with_limits};
 use super::refusals::{End, Refusals};
-use super::relations::{PartEnds, Splits, name_parts};
+use super::relations::{PartEnds, Splits, Turns, name_parts, set_aside, set_members, turns_of};
 use super::split::{Part, parts};
 use super::tags::{Said, Tag, with_permits};
 use super::{FIRST_NEW_ID, Flavour};
-use crate::export::ways::{OnWay, Piece, WayEdges, ids};
+use crate::export::ways::{OnWay, Piece, WayEdges, check_ids, ids};
 use crate::export::{ExportError, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
@@ -30,6 +31,7 @@ pub(in crate::export::formats) fn rewrite(
         source,
         flavour,
         refusals: Refusals::create(source, flavour, place)?,
+        limits: NodeLimits::default(),
         splits: Splits::default(),
         new_ways: Spool::new(place.scratch(".ways")?),
         next_id: FIRST_NEW_ID,
@@ -59,6 +61,7 @@ struct Rewriter<'s, 'r> {
     source: &'s Source<'r>,
     flavour: Flavour,
     refusals: Refusals<'s, 'r>,
+    limits: NodeLimits,
     splits: Splits,
     new_ways: Spool,
     /// Id of the next new way.
@@ -78,8 +81,9 @@ impl Rewriter<'_, '_> {
         while let Some(blob) = blobs.next_blob()? {
             match blobs.contents(&blob)? {
                 Contents::Header(header) => self.header(*header)?,
-                Contents::Nodes => {
+                Contents::Nodes(limits) => {
                     self.reach(Stage::Nodes)?;
+                    limits.iter().for_each(|block| self.limits.take(block));
                     write_blob(&mut self.out, "OSMData", &blob.bytes)?;
                 }
                 Contents::Block(block) => self.block(*block, &blob.bytes, &mut edges)?,
@@ -121,6 +125,7 @@ impl Rewriter<'_, '_> {
     }
 
     fn block(&mut self, mut block: PrimitiveBlock, blob: &[u8], edges: &mut WayEdges<'_>) -> Result<(), ExportError> {
+        self.limits.take(&block);
         let mut texts = Texts::over(std::mem::take(&mut block.stringtable.mut_or_insert_default().s));
         let mut changed = false;
         for group in &mut block.primitivegroup {
@@ -128,8 +133,7 @@ impl Rewriter<'_, '_> {
                 changed |= self.way(way, &mut texts, edges)?;
             }
             for relation in &mut group.relations {
-                changed |= name_parts(relation, &self.splits, &mut texts);
-                self.refusals.hear(relation, &texts);
+                changed |= self.relation(relation, &mut texts)?;
             }
         }
         let groups = std::mem::take(&mut block.primitivegroup);
@@ -148,6 +152,31 @@ impl Rewriter<'_, '_> {
         Ok(())
     }
 
+    /// Makes a relation name the parts of ways, and a restriction one turn. Returns whether it was changed.
+    fn relation(&mut self, relation: &mut Relation, texts: &mut Texts) -> Result<bool, ExportError> {
+        check_ids("relation", relation.id(), &ids(&relation.memids))
+            .map_err(|detail| self.source.extract_error(detail))?;
+        let mut changed = name_parts(relation, &self.splits, texts);
+        match turns_of(relation, texts) {
+            Turns::AsItIs => {}
+            Turns::NotToBeSaid => {
+                set_aside(relation, texts);
+                changed = true;
+            }
+            Turns::Each(turns) => {
+                let mut turns = turns.iter();
+                let first = turns.next();
+                for turn in turns {
+                    self.refusals.one_of_several(relation, turn, texts)?;
+                }
+                first.into_iter().for_each(|turn| set_members(relation, turn, texts));
+                changed = true;
+            }
+        }
+        self.refusals.hear(relation, texts);
+        Ok(changed)
+    }
+
     /// Tags and splits a way. Returns whether it was changed.
     fn way(&mut self, way: &mut Way, texts: &mut Texts, edges: &mut WayEdges<'_>) -> Result<bool, ExportError> {
         if way.id() >= FIRST_NEW_ID {
@@ -155,6 +184,7 @@ impl Rewriter<'_, '_> {
             return Err(self.source.extract_error(detail));
         }
         let refs = ids(&way.refs);
+        check_ids("way", way.id(), &refs).map_err(|detail| self.source.extract_error(detail))?;
         let whole = || vec![Part { first: 0, last: refs.len().saturating_sub(1), said: Said::default() }];
         let (pieces, parts) = match edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))? {
             OnWay::Nothing if !way.keys.iter().any(|&key| KEYS.contains(&texts.text(key))) => return Ok(false),
@@ -164,7 +194,8 @@ impl Rewriter<'_, '_> {
                 (Vec::new(), whole())
             }
             OnWay::Pieces(pieces) => {
-                let parts = parts(&pieces, &refs, &self.source.permitted, self.refusals.cuts());
+                let limited = |nodes: &[i64]| self.limits.any_on(nodes);
+                let parts = parts(&pieces, &refs, &self.source.permitted, self.refusals.cuts(), &limited);
                 (pieces, parts)
             }
         };
@@ -222,17 +253,21 @@ impl Rewriter<'_, '_> {
     ) -> Result<(), ExportError> {
         let text = |number: &u32| texts.text(*number).to_vec();
         let tags: Vec<Tag> = way.keys.iter().zip(&way.vals).map(|(key, value)| (text(key), text(value))).collect();
+        let tags_of = |part: &Part| {
+            let of_nodes = self.limits.on(refs.get(part.first..=part.last).unwrap_or_default());
+            with_limits(with_permits(&tags, part.said, self.flavour), &of_nodes)
+        };
         let mut parts = parts.iter().zip(ids);
         let first = parts.next();
         for (part, &id) in parts {
             let mut new = way.clone();
             new.set_id(id);
             new.refs = steps(refs, part);
-            self.new_ways.way(new, &with_permits(&tags, part.said, self.flavour), texts)?;
+            self.new_ways.way(new, &tags_of(part), texts)?;
         }
         if let Some((part, _)) = first {
             way.refs = steps(refs, part);
-            let tags = with_permits(&tags, part.said, self.flavour);
+            let tags = tags_of(part);
             way.keys = tags.iter().map(|(key, _)| texts.number(key)).collect();
             way.vals = tags.iter().map(|(_, value)| texts.number(value)).collect();
         }

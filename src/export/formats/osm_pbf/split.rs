@@ -41,7 +41,14 @@ impl Cuts {
 }
 
 /// The parts of a way with these pieces and references. Neighbouring parts share a node.
-pub(super) fn parts(pieces: &[Piece], refs: &[i64], permitted: &Permitted, cuts: &Cuts) -> Vec<Part> {
+/// `limited` says whether some of these nodes have a limit: it is that of the pieces beside, so the way is split at their ends.
+pub(super) fn parts(
+    pieces: &[Piece],
+    refs: &[i64],
+    permitted: &Permitted,
+    cuts: &Cuts,
+    limited: &dyn Fn(&[i64]) -> bool,
+) -> Vec<Part> {
     let mut out: Vec<Part> = Vec::new();
     // Whether the last part must not be extended.
     let mut ended = false;
@@ -66,7 +73,8 @@ pub(super) fn parts(pieces: &[Piece], refs: &[i64], permitted: &Permitted, cuts:
         add(Part { first: done, last: piece.first, said: Said::default() }, [false; 2]);
         let yes = piece.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge)));
         let said = Said { permitted: yes, rsc_m: piece.rsc_m };
-        let cut = cuts.of(piece, yes);
+        let on_piece = refs.get(piece.first..=piece.last).unwrap_or_default();
+        let cut = if limited(on_piece) { [true; 2] } else { cuts.of(piece, yes) };
         match middle_of_loop(piece, refs).filter(|_| cut != [false; 2]) {
             // The piece returns to its beginning. It is split in the middle, because a relation could not tell its ends apart.
             Some(middle) => {
@@ -90,6 +98,9 @@ fn middle_of_loop(piece: &Piece, refs: &[i64]) -> Option<usize> {
 mod tests {
     use super::*;
 
+    /// A node with a limit.
+    const LIMITED: i64 = 77;
+
     fn piece(first: usize, last: usize, edges: [Option<u32>; 2]) -> Piece {
         Piece { first, last, edges, rsc_m: [Some(0.5); 2] }
     }
@@ -98,7 +109,10 @@ mod tests {
         let mut bits = Bits::unset(10);
         permitted.iter().for_each(|&edge| bits.set(edge));
         let permitted = Permitted { edges: bits, ..Permitted::default() };
-        parts(pieces, refs, &permitted, cuts).iter().map(|p| (p.first, p.last, p.said.permitted)).collect()
+        parts(pieces, refs, &permitted, cuts, &|nodes| nodes.contains(&LIMITED))
+            .iter()
+            .map(|p| (p.first, p.last, p.said.permitted))
+            .collect()
     }
 
     #[test]
@@ -109,6 +123,17 @@ mod tests {
         assert_eq!(spans(&pieces, &refs, &[0, 1, 2], &none), [(0, 5, [true, false])]);
         assert_eq!(spans(&pieces, &refs, &[], &none), [(0, 5, [false; 2])]);
         assert_eq!(spans(&pieces, &refs, &[0, 1], &none), [(0, 3, [true, false]), (3, 5, [false; 2])]);
+    }
+
+    #[test]
+    fn a_way_ends_at_both_ends_of_an_edge_with_a_limit_of_a_node() {
+        let pieces = [piece(0, 1, [Some(0), None]), piece(1, 3, [Some(1), None]), piece(3, 4, [Some(2), None])];
+        let along = [true, false];
+        let found = spans(&pieces, &[1, 2, LIMITED, 3, 4], &[0, 1, 2], &Cuts::none(10));
+        assert_eq!(found, [(0, 1, along), (1, 3, along), (3, 4, along)]);
+        // On a junction it is that of the edges on both sides.
+        let found = spans(&pieces, &[1, LIMITED, 3, 4, 5], &[0, 1, 2], &Cuts::none(10));
+        assert_eq!(found, [(0, 1, along), (1, 3, along), (3, 4, along)]);
     }
 
     #[test]

@@ -32,7 +32,7 @@ use property::{Property, SLACK};
 use set::Group;
 use subject::Subject;
 
-pub(super) use rule::OTHER_VEHICLES;
+pub(super) use rule::{OTHER_VEHICLES, REMARKS};
 pub use set::RuleSet;
 pub use subject::At;
 pub(super) use tags::RuleTags;

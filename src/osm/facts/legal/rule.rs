@@ -89,7 +89,7 @@ pub(in crate::osm::facts) const OTHER_VEHICLES: [&str; 37] = [
 const WIDTHS: [&str; 3] = ["width", "width:carriageway", "est_width"];
 
 /// Parts of keys that make a remark of a tag, or a matter of lanes.
-const REMARKS: [&str; 25] = [
+pub(in crate::osm::facts) const REMARKS: [&str; 25] = [
     "check_date",
     "colour",
     "comment",
