@@ -36,13 +36,8 @@ enum Value {
 
 impl Batch {
     /// Inserts the rows.
-    #[allow(unsafe_code)]
     pub(super) async fn insert(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
-        let mut handle = connection.lock_handle().await?;
-        // SAFETY: the connection is open. `handle` keeps sqlx away from it and outlives `db`. Dropping `db` does not close it, and leaves its
-        // handlers as they are, as long as rusqlite is built without the feature `hooks`.
-        let db = unsafe { rusqlite::Connection::from_handle(handle.as_raw_handle().as_ptr()) }.map_err(of_rusqlite)?;
-        self.insert_into(&db).map_err(of_rusqlite)
+        with_rusqlite(connection, |db| self.insert_into(db)).await
     }
 
     fn insert_into(&self, db: &rusqlite::Connection) -> rusqlite::Result<()> {
@@ -64,6 +59,19 @@ impl Batch {
         }
         Ok(())
     }
+}
+
+/// Works on sqlx's connection with rusqlite, on the thread of the caller.
+#[allow(unsafe_code)]
+pub(super) async fn with_rusqlite<T>(
+    connection: &mut SqliteConnection,
+    work: impl FnOnce(&rusqlite::Connection) -> rusqlite::Result<T>,
+) -> Result<T, sqlx::Error> {
+    let mut handle = connection.lock_handle().await?;
+    // SAFETY: the connection is open. `handle` keeps sqlx away from it and outlives `db`. Dropping `db` does not close it, and leaves its
+    // handlers as they are, as long as rusqlite is built without the feature `hooks`.
+    let db = unsafe { rusqlite::Connection::from_handle(handle.as_raw_handle().as_ptr()) }.map_err(of_rusqlite)?;
+    work(&db).map_err(of_rusqlite)
 }
 
 /// Where batches go.

@@ -22,6 +22,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (12, "map changes", include_str!("../../migrations/0012_map_changes.sql")),
     (13, "segments", include_str!("../../migrations/0013_segments.sql")),
     (14, "backdrop", include_str!("../../migrations/0014_backdrop.sql")),
+    (15, "signatures", include_str!("../../migrations/0015_signatures.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know

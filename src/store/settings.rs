@@ -51,6 +51,15 @@ impl CertifiedSet {
         })
     }
 
+    /// The settings as JSON, as they are stored.
+    ///
+    /// # Errors
+    /// The stored settings cannot be read.
+    pub fn written_settings(&self) -> Result<&str, StoreError> {
+        self.settings()?;
+        Ok(&self.settings)
+    }
+
     /// The stored text of the settings, readable or not. It tells one state of a set from another.
     #[cfg(feature = "serve")]
     pub(crate) fn kept_settings(&self) -> &str {
