@@ -107,6 +107,7 @@ mod output_lock;
 pub mod overture;
 pub mod picture;
 pub mod pipeline;
+pub mod program;
 pub mod region;
 pub mod reporter;
 pub mod route;

@@ -8,13 +8,14 @@ use std::sync::Arc;
 
 use jiff::civil::DateTime;
 
+use crate::certificate::Origin;
 use crate::explain::{self, Explanation, TurnExplanation};
 use crate::osm::facts::Policy;
 use crate::route::{Driver, Measure, NoDriver, Peer, Planner, Roads, Speeds, SpeedsError};
 use crate::rows::TurnRow;
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
-use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError, TurnQuery};
+use crate::store::{CertifiedSet, Database, QueryOptions, Rows, Run, StoreError, TurnQuery};
 use crate::turns::turn_facts;
 use crate::vehicle::{Vehicle, VehicleError};
 
@@ -272,6 +273,31 @@ impl Region {
         let turn = turns.into_iter().find(|turn| turn.id == turn_id);
         let turn = turn.ok_or_else(|| RegionError::NoSuchId { path: self.path.clone(), id: turn_id })?;
         Ok(explain::explain_turn(&roads.network, &turn, &model, &settings, stop)?)
+    }
+
+    /// What a route's certificate file says of the data behind it. `at`: the time of [`Self::set_time`].
+    ///
+    /// # Errors
+    /// The vehicle is not certified under this policy; the file cannot be read.
+    pub fn origin(&mut self, vehicle: &str, policy: Policy, at: Option<DateTime>) -> Result<Origin, RegionError> {
+        let (set, _) = self.certified(vehicle, policy)?;
+        let settings = serde_json::from_str(set.written_settings()?).unwrap_or_default();
+        let measurements = self.database.register()?.entries.len();
+        let mut runs: Vec<Run> = self.database.runs()?.into_iter().map(|(run, _)| run).collect();
+        // The run that read the extract first; others certified on what it made.
+        runs.sort_by_key(|run| !run.read_extract());
+        let read = runs.into_iter().next();
+        let read = read
+            .ok_or_else(|| StoreError::Damaged { path: self.path.clone(), detail: "no run is recorded".to_owned() })?;
+        Ok(Origin {
+            input_name: read.input_name,
+            input_blake3: read.input_blake3,
+            replication_timestamp: read.replication_timestamp,
+            netcert_version: read.netcert_version,
+            measurements,
+            settings,
+            at: at.map(|time| time.to_string()),
+        })
     }
 
     /// The set of a vehicle under a policy, and the vehicle.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use netcert::certificate::Origin;
 use netcert::corridor::FileCorridor;
 use netcert::route::{self as library, Driver, Roads, Route};
 use netcert::{certificate, picture};
@@ -16,11 +17,12 @@ pub(crate) struct Answer {
     answer: library::Answer,
     roads: Arc<Roads>,
     driver: Arc<Driver>,
+    origin: Origin,
 }
 
 impl Answer {
-    pub(crate) fn new(answer: library::Answer, roads: Arc<Roads>, driver: Arc<Driver>) -> Self {
-        Self { answer, roads, driver }
+    pub(crate) fn new(answer: library::Answer, roads: Arc<Roads>, driver: Arc<Driver>, origin: Origin) -> Self {
+        Self { answer, roads, driver, origin }
     }
 
     /// A route by its number: the certified ones, then the one under conditions.
@@ -56,7 +58,9 @@ impl Answer {
         let conditions = self.conditions(conditional);
         let given = FileCorridor { corridor: route.path.corridor.clone(), frame: Some(route.path.frame) };
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
-        let text = work::run(py, |_| certificate::text_under(conditions, &given, model, &route.certificate, options))?;
+        let text = work::run(py, |_| {
+            certificate::text_under(conditions, &self.origin, &given, model, &route.certificate, options)
+        })?;
         text.map_err(|e| error::NetcertError::new_err(e.to_string()))
     }
 

@@ -253,7 +253,8 @@ impl RegionFile {
                 planners.clear();
             }
             planners.insert(key, planner);
-            answer.map(|answer| Answer::new(answer, roads, driver))
+            let origin = self.region().origin(vehicle_id, policy, None).map_err(|e| error::of_region(&e))?;
+            answer.map(|answer| Answer::new(answer, roads, driver, origin))
         })?
     }
 

@@ -5,11 +5,13 @@
 //! | --- | --- |
 //! | `nominal` | the poses of all units along the smooth plan when nothing disturbs the vehicle |
 //! | `tubes` | the members of one unit's tube |
+//! | `origin` | the data behind a route |
 //!
 //! The sweep steps from station to station, and its bounds allow for that. The nominal places in a file are computed again
 //! here in finer steps, so that another program finds the same places.
 
 mod nominal;
+mod origin;
 mod tubes;
 
 use serde_json::{Value, json};
@@ -19,6 +21,7 @@ use crate::seal::sealed;
 use crate::stet::{Certificate, Model, Options, known_m};
 use crate::words::{Named as _, verdict_words};
 use nominal::Nominal;
+pub use origin::Origin;
 
 /// The columns of leeway claim this much less than the sweep computed, metres.
 const LESS_M: f64 = 1e-2;
@@ -47,12 +50,14 @@ pub fn text(
     Ok(sealed(&json(given, model, certificate, options)?))
 }
 
-/// The text of a certificate file of a corridor that is as `conditions` say. Its verdict is `conditional` instead of `safe`.
+/// The text of a route's certificate file. If there are `conditions`, the corridor is as they say, and the verdict is `conditional`
+/// instead of `safe`.
 ///
 /// # Errors
 /// See [`CertificateError`].
 pub fn text_under(
     conditions: Vec<Value>,
+    origin: &Origin,
     given: &FileCorridor,
     model: &Model,
     certificate: &Certificate,
@@ -65,6 +70,7 @@ pub fn text_under(
         document["safe"] = json!(false);
     }
     document["conditions"] = Value::Array(conditions);
+    document["origin"] = origin.json();
     Ok(sealed(&document))
 }
 

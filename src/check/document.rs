@@ -74,6 +74,8 @@ const MEMBERS: &[&str] = &[
     "leeway",
     "tubes",
     "conditions",
+    "origin",
+    "signature",
     "sha256",
 ];
 pub(super) const COLUMNS: [&str; 4] = ["left", "right", "left_centred", "right_centred"];

@@ -186,7 +186,8 @@ impl Route {
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
             let (model, options) = (&inputs.driver.model, &inputs.settings().stet);
             let conditions = conditional.map_or_else(Vec::new, |known| route::condition_members(network, known));
-            write(path, certificate::text_under(conditions, &given, model, &best.certificate, options)?)?;
+            let text = certificate::text_under(conditions, &inputs.origin, &given, model, &best.certificate, options)?;
+            write(path, text)?;
             let under = if conditional.is_some() { ", which holds under its conditions" } else { "" };
             session.progress.say(&format!("{}: the whole certificate{under}", path.display()));
         }

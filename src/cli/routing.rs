@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use jiff::civil::DateTime;
+use netcert::certificate::Origin;
 use netcert::osm::facts::Policy;
 use netcert::region::Region;
 use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
@@ -46,6 +47,7 @@ pub(crate) struct RoutingInputs {
     pub(crate) speeds: Speeds,
     /// The time of the permits. `None`: of all times together.
     pub(crate) at: Option<DateTime>,
+    pub(crate) origin: Origin,
 }
 
 impl RoutingArgs {
@@ -71,7 +73,8 @@ impl RoutingArgs {
             region.set_time(time)?;
         }
         let driver = region.driver(&self.vehicle, set.policy)?;
-        Ok(RoutingInputs { path, roads: region.roads()?, driver, speeds: Speeds::builtin()?, at: self.at })
+        let origin = region.origin(&self.vehicle, set.policy, self.at)?;
+        Ok(RoutingInputs { path, roads: region.roads()?, driver, speeds: Speeds::builtin()?, at: self.at, origin })
     }
 }
 

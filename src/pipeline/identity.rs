@@ -1,6 +1,7 @@
 //! The identity of a run's work: a hash of everything on which its certificates depend, the program included.
 
 use crate::osm::facts::Countries;
+pub(super) use crate::program::PROGRAM;
 use crate::settings::Settings;
 use crate::store::StoreError;
 
@@ -33,9 +34,6 @@ impl Identity {
         *self.0.finalize().as_bytes()
     }
 }
-
-/// The version of the program and a hash of its sources: two builds of one version may differ.
-pub(super) const PROGRAM: &str = concat!(env!("CARGO_PKG_VERSION"), "+", env!("NETCERT_SOURCES"));
 
 /// The member of a run's parameters that has the road rules.
 pub(super) const ROAD_RULES: &str = "road_rules";
