@@ -11,6 +11,7 @@
 //! | certify one corridor | [`corridor::corridor_from_file`], [`stet::certify`] |
 //! | write a certificate file, and check one | [`certificate::text`], [`check::certificate`] |
 //! | check a database | [`verify::verify`] |
+//! | sign either, and check signatures | [`sign`] |
 //! | draw any of it | [`picture`] |
 //! | cancel long work | [`stop::Stop`], which every long function takes |
 //! | bound what one piece of work takes | [`watch::set_patience`] |
@@ -118,6 +119,7 @@ pub mod seal;
 pub mod serve;
 pub mod settings;
 mod shape;
+pub mod sign;
 mod sorter;
 mod sqlite;
 pub mod store;

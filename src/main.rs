@@ -45,5 +45,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Cells(verb) => verb.run(&session),
         Verb::Assemble(verb) => verb.run(&session),
         Verb::Verify(verb) => verb.run(&session),
+        Verb::Sign(verb) => verb.run(&session),
+        Verb::Keygen(verb) => verb.run(&session),
     }
 }

@@ -7,7 +7,6 @@
 use serde_json::Value;
 
 use super::document::{COLUMNS, Document, TubeClaim};
-use super::members::Wrong;
 use crate::seal;
 use netcert_check::Chain;
 use netcert_check::Swept;
@@ -52,7 +51,7 @@ impl Report {
 #[must_use]
 pub fn certificate(text: &str) -> Report {
     let mut report = Report { claims: Vec::new(), unknown: Vec::new(), conditions: Vec::new() };
-    let sealed = seal(text);
+    let sealed = seal::body(text).map(drop);
     let holds = sealed.is_ok();
     report.claims.push(("sha256".to_owned(), sealed.map_or_else(Outcome::Malformed, |()| Outcome::Confirmed)));
     if !holds {
@@ -84,12 +83,6 @@ fn conditions(document: &Value) -> Vec<String> {
         format!("{}: {} at least {} {}", text("title"), text("kind").replace('_', " "), number("needed"), text("unit"))
     };
     document.get("conditions").and_then(Value::as_array).into_iter().flatten().map(line).collect()
-}
-
-fn seal(text: &str) -> Result<(), Wrong> {
-    let (body, tail) = text.rsplit_once(seal::MARK).ok_or("sha256: missing, or not the last member")?;
-    let said = tail.trim_end().strip_suffix("\"}").ok_or("sha256: not the last member")?;
-    if said == seal::hash(body) { Ok(()) } else { Err("sha256: the file is not as it was written".to_owned()) }
 }
 
 /// The claims, in the order of the report.

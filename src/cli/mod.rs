@@ -16,6 +16,7 @@ mod explain;
 mod export;
 mod fleet;
 mod ingest;
+mod keygen;
 mod logger;
 mod manoeuvres;
 mod measurements;
@@ -33,6 +34,7 @@ mod routing;
 mod rows;
 mod serve;
 mod sheet;
+mod sign;
 mod stage;
 mod stats;
 mod stop;
@@ -105,13 +107,15 @@ pub(crate) enum Verb {
     Cells(cells::Cells),
     Assemble(assemble::Assemble),
     Verify(verify::Verify),
+    Sign(sign::Sign),
+    Keygen(keygen::Keygen),
 }
 
 impl Verb {
     /// How long one stroke, turn or search may take.
     fn patience(&self) -> Patience {
         match self {
-            Self::Ingest(_) | Self::Certify(_) | Self::Survey(_) | Self::Verify(_) => Patience::REGION,
+            Self::Ingest(_) | Self::Certify(_) | Self::Survey(_) | Self::Verify(_) | Self::Sign(_) => Patience::REGION,
             _ => Patience::ANSWER,
         }
     }
@@ -121,7 +125,9 @@ impl Verb {
         match self {
             Self::Serve(_) => None,
             Self::Ingest(_) => Some("; the same command goes on from there"),
-            Self::Update(_) | Self::Certify(_) | Self::Evidence(_) => Some("; the database is as it was"),
+            Self::Update(_) | Self::Certify(_) | Self::Evidence(_) | Self::Sign(_) => {
+                Some("; the database is as it was")
+            }
             _ => Some(""),
         }
     }

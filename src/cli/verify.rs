@@ -9,7 +9,9 @@ use clap::Args;
 use netcert::check::{self, Outcome, Report};
 use netcert::osm::facts::Policy;
 use netcert::rows::Bounds;
+use netcert::sign::{PublicKey, Refusal, Signed, check_database, check_document};
 use netcert::stop::Stop;
+use netcert::store::Database;
 use netcert::verify::{Checked, Complaint, Request, verify};
 use netcert::words::Named;
 
@@ -37,11 +39,16 @@ Examples:
   netcert verify certificate.json
   netcert verify --db demo.gpkg
   netcert verify --db demo.gpkg --vehicle AU-ATRIPLE53 --sample 1000
+  netcert verify certificate.json --key authority.pub.pem
 
 Every claim is computed again: geometry, motion along the plan, straight gains, tubes, leeway,
 hinges, RSC and hashes. A claim is confirmed if the computed bound is at most 1 mm below the claimed
 one. Otherwise it is not confirmed, and the output says by how much and where. A claim that cannot
-be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed.")]
+be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed.
+
+With --key the signature is checked first. What is not signed, is signed with another key, or was
+changed after it was signed, is refused with status 1. Without --key a signature is checked only with
+the key that the file itself names: whose key that is, nobody has checked.")]
 pub(crate) struct Verify {
     /// The certificate file to check.
     #[arg(value_name = "CERTIFICATE.json", required_unless_present = "db", conflicts_with = "db")]
@@ -64,13 +71,22 @@ pub(crate) struct Verify {
     /// The extract that the database was made from. Its hash is compared with the hash in the database.
     #[arg(long, value_name = "REGION.osm.pbf", requires = "db")]
     input: Option<PathBuf>,
+    /// The public key of a signer whom you trust, Ed25519 in SPKI PEM. Give the option once for each key; one of them must have signed.
+    #[arg(long, value_name = "PUBLIC.pem")]
+    key: Vec<PathBuf>,
 }
 
 impl Verify {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let keys = self.key.iter().map(|path| PublicKey::read(path)).collect::<Result<Vec<_>, _>>()?;
         match (&self.file, &self.db) {
-            (Some(file), _) => verify_file(file),
-            (None, Some(db)) => self.database(session, db),
+            (Some(file), _) => verify_file(file, &keys),
+            (None, Some(db)) => {
+                let mut database = Database::open_to_stream(db)?;
+                accept(db, check_database(&mut database, &keys), &keys)?;
+                database.close()?;
+                self.database(session, db)
+            }
             (None, None) => bail!("name a certificate file, or a database with --db"),
         }
     }
@@ -127,8 +143,33 @@ fn count(table: &mut Table, checked: &Checked) {
     }
 }
 
-fn verify_file(path: &Path) -> anyhow::Result<()> {
-    let report = check::certificate(&read(path)?);
+/// Prints whose signatures hold. Refuses what is not signed, unless no key is given.
+fn accept(path: &Path, checked: Result<Vec<Signed>, Refusal>, keys: &[PublicKey]) -> anyhow::Result<()> {
+    let signatures = match checked {
+        Ok(signatures) => signatures,
+        Err(Refusal::Unsigned) if keys.is_empty() => return Ok(()),
+        Err(Refusal::Store(error)) => return Err(error.into()),
+        Err(refusal) => bail!("{}: refused: {}", path.display(), printable(&refusal.to_string())),
+    };
+    let mut out = results();
+    for Signed { signer, time, program, key } in &signatures {
+        let signer = signer.as_ref().map_or_else(String::new, |name| format!(" by {}", printable(name)));
+        let (time, program) = (printable(time), printable(program));
+        writeln!(out, "signed{signer} on {time} with key {} and netcert {program}", key.fingerprint())?;
+        if keys.is_empty() {
+            writeln!(
+                out,
+                "  whose key that is was not checked; check it with --key and the public key of a signer you trust"
+            )?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+fn verify_file(path: &Path, keys: &[PublicKey]) -> anyhow::Result<()> {
+    let text = read(path)?;
+    accept(path, check_document(&text, keys).map(|signed| vec![signed]), keys)?;
+    let report = check::certificate(&text);
     let mut out = results();
     for line in lines(&report) {
         writeln!(out, "{line}")?;
@@ -147,7 +188,8 @@ fn verify_file(path: &Path) -> anyhow::Result<()> {
     bail!("{}: {refuted} of {} claims are not confirmed", path.display(), report.claims.len())
 }
 
-fn read(path: &Path) -> anyhow::Result<String> {
+/// Reads a certificate file of bounded length.
+pub(super) fn read(path: &Path) -> anyhow::Result<String> {
     let cannot = |e: std::io::Error| anyhow!("{}: cannot read the certificate: {e}", path.display());
     let bytes = std::fs::metadata(path).map_err(cannot)?.len();
     if bytes > MAX_FILE_BYTES {

@@ -31,6 +31,7 @@ mod resume;
 mod route_cli;
 mod serve;
 mod settings;
+mod sign;
 mod support;
 mod survey;
 mod tasks;
