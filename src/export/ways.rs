@@ -17,7 +17,7 @@ use super::Source;
 /// The message for an extract that is not sorted. `ingest` accepts such an extract, but the merge does not.
 const SORT: &str = "this export needs objects sorted by id; sort them with `osmium sort`, then ingest that file";
 
-/// Refuses negative ids, which engines take for others: Valhalla 3.9.1 takes −5 for 2^64 − 5.
+/// Refuses negative ids. Valhalla 3.9.1 takes −5 for 2^64 − 5, and OSRM 26.10 does not read such a file.
 ///
 /// # Errors
 /// The first negative one of the object's id and those that it names.
@@ -25,7 +25,7 @@ pub(super) fn check_ids(kind: &str, id: i64, named: &[i64]) -> Result<(), String
     match std::iter::once(&id).chain(named).find(|id| **id < 0) {
         None => Ok(()),
         Some(negative) => Err(format!(
-            "{kind} {id} has the negative id {negative}, which engines take for another one; number the file anew with \
+            "{kind} {id} has the negative id {negative}, which engines do not read or take for another one; number the file anew with \
              `osmium sort` and `osmium renumber`, then ingest that file"
         )),
     }

@@ -170,7 +170,7 @@ def missing(permits, drawn, found):
 
 
 def repeated(before, after):
-    """Restrictions that were lost, and those that say what another one says."""
+    """Restrictions that were lost, those that say what another one says, and those of several turns, of which engines take one."""
     def restrictions(path):
         out = {}
         for relation in osmium.FileProcessor(path, osmium.osm.RELATION):
@@ -180,7 +180,9 @@ def repeated(before, after):
     old, new = restrictions(before), restrictions(after)
     lost = sum(1 for number, (tags, _) in old.items() if new.get(number, ({},))[0] != tags)
     said = [members for tags, members in new.values() if tags["type"] == "restriction"]
-    return lost, len(said) - len(set(said))
+    roles = [[role for _, _, role in members] for members in said]
+    several = sum(members.count("from") > 1 or members.count("to") > 1 for members in roles)
+    return lost, len(said) - len(set(said)), several
 
 
 def survey(permits, drawn, route):
@@ -233,7 +235,7 @@ def run(extract, tables, tuned, rewritten, valhalla, work):
         return found and (permits.whole(permits.nodes_of(found), pair), (found[0], found[-1]))
 
     out["valhalla"] = survey(permits, drawn, line)
-    out["lost"], out["repeated"] = repeated(extract, rewritten)
+    out["lost"], out["repeated"], out["several"] = repeated(extract, rewritten)
     print(json.dumps(out))
 
 

@@ -154,6 +154,7 @@ fn refusals_of_every_shape_are_obeyed_and_said_once() {
         assert_eq!(answer[name]["elsewhere"], 0, "{answer}");
     }
     // A restriction with several `from` or `to` closes the turns that it means, and no other one.
+    assert_eq!(answer["several"], 0, "{answer}");
     for name in ["pbf", "valhalla"] {
         assert_eq!(answer[name]["missing"], serde_json::json!([]), "{answer}");
     }

@@ -138,10 +138,10 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
     assert!(restrictions > 0);
 }
 
-/// Editors give new objects negative ids. Valhalla takes -5 for 2^64 - 5, and OSRM's tables cannot name it.
+/// Editors give new objects negative ids. Valhalla takes -5 for 2^64 - 5, and OSRM does not read it.
 #[test]
 fn an_extract_with_negative_ids_is_refused_with_a_way_out() {
-    let node = |id| NodeRecord { id, place: LonLat { lon_e7: id as i32 * 30_000, lat_e7: 0 } };
+    let node = |id| NodeRecord { id, place: LonLat { lon_e7: id as i32 * 30_000, lat_e7: 0 }, tags: vec![] };
     let way = |id, refs: &[i64]| {
         let tags = vec![("highway".to_owned(), "primary".to_owned()), ("width".to_owned(), "14".to_owned())];
         WayRecord { id, refs: refs.to_vec(), tags }

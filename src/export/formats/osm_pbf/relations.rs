@@ -85,7 +85,8 @@ pub(super) fn set_members(relation: &mut Relation, members: &[Member], texts: &m
     }
 }
 
-/// What a restriction says of turns, one by one: engines take one `from` and one `to` of it (seen with OSRM 26.10 and Valhalla 3.9.1).
+/// What a restriction says of turns, one by one. Of several members Valhalla 3.9.1 takes one pair, and OSRM 26.10 drops some restrictions
+/// whole (`findings/restriction-of-several-roads.sh`).
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Turns {
     /// It has one of each, or is no restriction.
