@@ -179,6 +179,7 @@ fn a_segment_meets_others_where_its_connectors_lie_and_is_cut_where_rules_change
 }
 
 /// A service road of 800 m with these properties. Returns the lengths of its ways in metres, and the account.
+#[allow(clippy::needless_pass_by_value)] // as `json!` gives it
 fn ways_of_service_road(more: Value) -> (Vec<i64>, Account) {
     let mut properties = json!({"class": "service"});
     properties.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
