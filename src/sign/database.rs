@@ -55,10 +55,8 @@ pub fn check_database(database: &mut Database, keys: &[PublicKey]) -> Result<Vec
         match checked {
             Ok(signed) => held.push(signed),
             // Of the given keys a later signature may hold. What is wrong with a given key's own signature says more than another key.
-            Err(refusal) => match &first {
-                Some(Refusal::OtherKey { .. }) | None => first = Some(refusal),
-                Some(_) => {}
-            },
+            Err(refusal) if matches!(first, None | Some(Refusal::OtherKey { .. })) => first = Some(refusal),
+            Err(_) => {}
         }
     }
     match first {
