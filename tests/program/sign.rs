@@ -1,7 +1,7 @@
 //! Signatures of certificate files and databases: whatever is changed afterwards is refused. OpenSSL judges keys and signatures from
 //! outside.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use netcert::seal::sealed;
@@ -369,7 +369,7 @@ fn the_commands_of_the_page_work() {
     std::fs::copy(crate::support::demo::demo(), place.path("data/demo.osm.pbf")).unwrap();
     let netcert = Path::new(env!("CARGO_BIN_EXE_netcert")).parent().unwrap().to_owned();
     let others = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(netcert).chain(std::env::split_paths(&others).map(PathBuf::from)));
+    let path = std::env::join_paths(std::iter::once(netcert).chain(std::env::split_paths(&others)));
     let commands: Vec<&str> = page.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap()).collect();
     let script = format!("set -euo pipefail\n{}", commands.concat());
     let mut bash = Command::new("bash");
