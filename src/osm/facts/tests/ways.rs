@@ -126,5 +126,6 @@ fn the_lowest_speed_limit_for_heavy_vehicles_counts_in_its_direction() {
 
 #[test]
 fn facts_stay_small() {
-    assert!(size_of::<WayFacts>() <= 184, "{} bytes", size_of::<WayFacts>());
+    // 48 of them point to the tags that people see.
+    assert!(size_of::<WayFacts>() <= 232, "{} bytes", size_of::<WayFacts>());
 }
