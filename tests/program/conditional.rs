@@ -134,6 +134,29 @@ fn measurements_close_the_conditions() {
     assert_eq!(route(&place, ROUND_A_CORNER)["routes"], Value::Array(Vec::new()));
 }
 
+/// What is measured exactly as named suffices, on the way that was named. The first of these asked for one more width afterwards.
+#[test]
+fn conditions_that_are_measured_exactly_as_named_suffice() {
+    for way in [
+        "--from 126.0519515,-30.2692626 --to 125.9581281,-30.2400555",
+        "--from 125.9657120,-30.2354767 --to 125.9953874,-30.2155866",
+        "--from 125.9598934,-30.2307860 --to 125.9613480,-30.2331314",
+    ] {
+        let place = Place::with_wide_demo(VEHICLE);
+        let edges = |route: &Value| -> Vec<i64> {
+            route["parts"].as_array().unwrap().iter().filter_map(|part| part["edge_id"].as_i64()).collect()
+        };
+        let named = edges(&route(&place, way)["conditional"]);
+        assert!(!named.is_empty(), "{way}");
+        place.netcert(&format!("route --vehicle {VEHICLE} {way} --sheet sheet.csv")).succeeds();
+        std::fs::write(place.path("filled.csv"), sheet::filled(&place.read("sheet.csv"))).unwrap();
+        place.netcert("evidence add filled.csv").succeeds();
+        let answer = route(&place, way);
+        assert_eq!(answer["conditions"], Value::Array(Vec::new()), "{way}: {:#}", answer["conditions"]);
+        assert_eq!(edges(&answer["routes"][0]), named, "{way}");
+    }
+}
+
 /// Lines of a sheet, with its header.
 fn reader_rows(sheet: &[u8]) -> usize {
     String::from_utf8_lossy(sheet).lines().count()

@@ -89,6 +89,10 @@ impl Fitting {
         }
     }
 
+    fn fitted(self, certified: Certified) -> Fitted {
+        Fitted { drive: self.drive, certified, supposed: self.supposed }
+    }
+
     /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.
     fn take_over(&mut self, section: &Self, first: usize) {
         let over = section.drive.over.iter().map(|arcs| arcs.start + first..arcs.end + first);
@@ -121,6 +125,11 @@ impl Fitter {
         access: &Access,
         stop: &Stop,
     ) -> Result<Result<Fitted, Unfit>, Stopped> {
+        if !self.base.is_empty()
+            && let Some(fitted) = self.as_measured(way, Suppositions::new(Arc::clone(&self.base)), stop)?
+        {
+            return Ok(Ok(fitted));
+        }
         let long_m = self.driver.model.vehicle.length_m + APART_M;
         let sections = sections(&self.roads.network, &self.roads.movements, way, long_m);
         // Where nothing does for a place, nothing needs to be known of other sections.
@@ -142,19 +151,59 @@ impl Fitter {
         // Fewer conditions first. The answer is made from nothing that was made before.
         let mut level = whole.clone();
         level.supposed.level_roads(&self.roads.network, &whole.drive.edges);
+        // Where less does on the whole, each edge and turn may also get what it needs by itself.
+        let mut generous = whole.supposed.clone();
+        for section in &sections {
+            if let Ok(own) = self.suppose(section, access, stop)? {
+                generous.add(&own.supposed);
+            }
+        }
+        for supposed in [level.supposed.clone(), whole.supposed.clone(), generous] {
+            if let Some(fitted) = self.as_measured(way, supposed, stop)? {
+                return Ok(Ok(fitted));
+            }
+        }
+        // No search with nothing supposed is known to find these once they are measured.
         for whole in [level, whole.clone()] {
             if let Some(certified) = self.fresh(&whole, stop)? {
-                return Ok(Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }));
+                return Ok(Ok(whole.fitted(certified)));
             }
         }
         if let Some(at) = self.suppose_until_safe(&mut whole, stop)? {
             return Ok(Err(Unfit(joint::parted(way.drive, at))));
         }
         Ok(match self.fresh(&whole, stop)? {
-            Some(certified) => Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }),
+            Some(certified) => Ok(whole.fitted(certified)),
             // No single place is at fault.
             None => Err(Unfit(Vec::new())),
         })
+    }
+
+    /// The way under what is supposed, if it is safe. What is supposed counts as if it were measured: when it is, the same search with nothing
+    /// supposed finds the same. Edges and turns need not be safe by themselves.
+    fn as_measured(&mut self, way: &Way<'_>, supposed: Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
+        let mut fitting = Fitting { supposed, ..Fitting::new(&self.base, way) };
+        for round in 0..ROUNDS {
+            fitting.round = round;
+            let places = match self.look(&mut fitting, stop)? {
+                Ok(looked) if looked.safe() => {
+                    let certified = self.fresh(&fitting, stop)?;
+                    return Ok(certified.map(|certified| fitting.fitted(certified)));
+                }
+                Ok(looked) => failing(&looked).into_iter().map(|place| place.at).collect(),
+                Err(Refutation { at, .. }) => vec![at],
+            };
+            let mut more = false;
+            for at in places.into_iter().filter(|at| matches!(at, PartKind::Turn { .. })) {
+                let Fitting { drive, choices, .. } = &mut fitting;
+                let another = self.whole.as_mut().is_some_and(|(whole, _)| whole.another(drive, at, choices));
+                more |= another || self.merge(&mut fitting, at, stop)?;
+            }
+            if !more {
+                break;
+            }
+        }
+        Ok(None)
     }
 
     /// Supposes for each edge and turn of a section what it needs by itself.

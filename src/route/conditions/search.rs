@@ -1,8 +1,10 @@
 //! The search for the way with the fewest and smallest conditions.
 
+use rustc_hash::FxHashSet;
+
 use super::Conditional;
 use super::fit::{Fitted, Fitter, Unfit};
-use crate::network::Network;
+use crate::network::{Movements, Network};
 use crate::route::assemble::{PartKind, Way};
 use crate::route::graph::{Access, BARRED};
 use crate::route::obstacles::{self, CENTIMETRE, Refutation};
@@ -23,6 +25,8 @@ const EDGE_CM_PER_M: f64 = 0.1;
 const NO_NUMBER_CM: f64 = 50.0;
 /// What a turn may lack that a hinge or the steering lock stops, centimetres.
 const HINGE_CM: f64 = 300.0;
+/// The price of what lacks room beside a measurement is this part of the usual one.
+const MEASURED_SHARE: u64 = 100;
 /// The greatest missing width that counts, centimetres.
 const MOST_MISSING_CM: f64 = 2000.0;
 
@@ -108,8 +112,35 @@ impl Planner {
                 *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
             }
         }
+        prefer_measured(network, movements, &mut access);
         access
     }
+}
+
+/// Makes cheap what lacks room beside a measurement: the way for which somebody measured is looked at first.
+fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access) {
+    if network.site.is_empty() {
+        return;
+    }
+    let nodes: FxHashSet<i64> = network.site.junctions().collect();
+    let measured: Vec<bool> = network
+        .edges
+        .iter()
+        .map(|edge| {
+            network.site.section(edge).is_some() || nodes.contains(&edge.from_node) || nodes.contains(&edge.to_node)
+        })
+        .collect();
+    let near = |edge: u32| measured.get(edge as usize).is_some_and(|&measured| measured);
+    let cheaper = |price: &mut u64| {
+        if *price != BARRED && *price > 0 {
+            *price = (*price / MEASURED_SHARE).max(1);
+        }
+    };
+    (0..).zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+    let turns = movements.all().iter().zip(&mut access.movements);
+    turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
+    let passages = movements.passages().iter().zip(&mut access.passages);
+    passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
 }
 
 fn price(cm: f64) -> u64 {

@@ -10,9 +10,9 @@ use super::turn_need::PAVED_M;
 use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
-use crate::network::{self, Network};
+use crate::network::{self, Edge, Network};
 use crate::osm::LonLat;
-use crate::osm::facts::Policy;
+use crate::osm::facts::{CrossSection, Policy, WidthSource};
 use crate::turns::Kerbs;
 
 /// Less than what a road lacks, as shares of it.
@@ -20,6 +20,9 @@ const WIDTH_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Widths are supposed in these parts of a metre, and kerb radii in these.
 const WIDTHS: f64 = 20.0;
 const RADII: f64 = 2.0;
+
+/// What single precision may take of a measured width at most, metres.
+const ROUNDING_M: f64 = 1e-5;
 
 /// What is supposed. Every value is a whole number of its parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +46,7 @@ impl Suppositions {
     /// Supposes that an edge's strip is at least so wide. Returns whether that is more than before.
     pub(in crate::route) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
         let width_m = in_steps(width_m);
-        if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m) {
+        if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m - ROUNDING_M) {
             return false;
         }
         self.widths_m.insert((edge, strip), width_m);
@@ -93,10 +96,14 @@ impl Suppositions {
 
     fn site(&self, network: &Network) -> network::Site {
         let mut site = network::Site::clone(&self.base);
-        for (&(edge, strip), &width_m) in &self.widths_m {
+        let mut widths_m = self.widths_m.iter().peekable();
+        while let Some((&(edge, _), _)) = widths_m.peek().copied() {
+            let mut of_edge = [None; 3];
+            while let Some((&(_, strip), &width_m)) = widths_m.next_if(|((other, _), _)| *other == edge) {
+                of_edge[strip as usize] = Some(width_m);
+            }
             let Some(edge) = network.edges.get(edge as usize) else { continue };
-            let section = site.section(edge).unwrap_or_else(|| network.mapped_section(edge));
-            site.set_section(edge, section.at_least(strip, width_m));
+            site.set_section(edge, self.section(network, edge, of_edge));
         }
         for (&(node, [from, to]), &radius_m) in &self.kerbs_m {
             if let (Some(from), Some(to)) = (network.edges.get(from as usize), network.edges.get(to as usize)) {
@@ -107,6 +114,23 @@ impl Suppositions {
             site.add_surface(node, disc(at, radius_m));
         }
         site
+    }
+
+    /// The cross section of an edge with the widths supposed, metres, in the order of [`Policy`]: what the register makes of measurements with
+    /// these values beside those that it has.
+    fn section(&self, network: &Network, edge: &Edge, supposed_m: [Option<f64>; 3]) -> CrossSection {
+        let mapped = network.mapped_section(edge);
+        let known = self.base.section(edge).unwrap_or(mapped);
+        let mut widths_m = [None; 3];
+        for strip in [Policy::Lane, Policy::Direction, Policy::Carriageway] {
+            let has = known.strip(strip);
+            let has_m = has.map(|strip| f64::from(strip.width_m()));
+            let measured_m = has_m.filter(|_| has.is_some_and(|strip| strip.source == WidthSource::Surveyed));
+            // What is as wide anyway is no condition, and nobody measures it.
+            let beyond = |m: &f64| has_m.is_some_and(|has_m| has_m < m - ROUNDING_M);
+            widths_m[strip as usize] = supposed_m[strip as usize].filter(beyond).or(measured_m);
+        }
+        mapped.with_widths(widths_m, WidthSource::Surveyed)
     }
 
     /// The widths alone that are supposed for some edges.
@@ -229,7 +253,7 @@ impl Suppositions {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
                 // What is as wide anyway need not be measured.
                 let known_m = self.known_width_m(network, *edge, strip);
-                let Some(assumed_m) = known_m.filter(|has_m| *has_m < needed_m) else { continue };
+                let Some(assumed_m) = known_m.filter(|has_m| *has_m < needed_m - ROUNDING_M) else { continue };
                 let place = *of_road.entry((road, strip, needed_m.to_bits())).or_insert(found.len());
                 if let Some((_, condition)) = found.get_mut(place) {
                     condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
