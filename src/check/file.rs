@@ -16,9 +16,10 @@ use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 
 /// Tolerance of nominal places, metres: the error of chords of a quarter of a station in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;
-/// Tolerance of `rsc_published_m`, which is a maximum over many nominal places: metres, or the share of a value beyond 1 m. Nothing is decided
-/// by it, and where the published measure diverges it is thousands of metres.
+/// Tolerance of `rsc_published_m`, which is a maximum over many nominal places: metres, and a share of the value where it diverges to
+/// thousands of metres. Nothing is decided by it.
 const PRINTED_M: f64 = 0.01;
+const PRINTED_SHARE: f64 = 2e-5;
 /// The greatest coarse margin of the hinge that the file names as the reason, radians. It allows for the turn of a station's
 /// chord.
 const HINGE_ABOVE_RAD: f64 = 0.1;
@@ -187,7 +188,7 @@ impl Document {
         let claimed_m = self.rsc_published_m?;
         let printed_m = printed::rsc_m(along, &self.vehicle, 0..self.corridor.len());
         let detail = format!("{claimed_m} is claimed, found {printed_m:.4}");
-        ((claimed_m - printed_m).abs() > PRINTED_M * printed_m.abs().max(1.0))
+        ((claimed_m - printed_m).abs() > PRINTED_M.max(PRINTED_SHARE * printed_m.abs()))
             .then(|| finding("rsc_published_m", &detail))
     }
 
