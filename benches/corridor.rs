@@ -69,6 +69,7 @@ fn road(section: CrossSection) -> Road {
         sections: [section; 2],
         legal: Default::default(),
         max_speed_km_h: [None; 2],
+        width_tags: None,
     }
 }
 
