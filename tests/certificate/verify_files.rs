@@ -49,6 +49,12 @@ fn add(value: &mut Value, by: f64) -> bool {
     true
 }
 
+/// Moves the published measure by 29 mm, or by the share of it that counts where it diverges.
+fn published(v: &mut Value, towards: f64) -> bool {
+    let by = v["rsc_published_m"].as_f64().map_or(0.0, |m| (5e-5 * m.abs()).max(0.029));
+    add(&mut v["rsc_published_m"], towards * by)
+}
+
 fn scale(value: &mut Value, by: f64) -> bool {
     let Some(number) = value.as_f64() else { return false };
     *value = json!(number * by);
@@ -111,8 +117,8 @@ const MUTATIONS: &[Mutation] = &[
     ("centres 20 mm aside", |v| tubes(v, "centre", |at| add(&mut at[0], 0.014) & add(&mut at[1], 0.0143))),
     ("times a tenth less", |v| tubes(v, "t", |t| scale(t, 0.9))),
     ("tubes half as wide", |v| tubes(v, "lateral_m", |m| scale(m, 0.5))),
-    ("published 29 mm up", |v| add(&mut v["rsc_published_m"], 0.029)),
-    ("published 29 mm down", |v| add(&mut v["rsc_published_m"], -0.029)),
+    ("published up", |v| published(v, 1.0)),
+    ("published down", |v| published(v, -1.0)),
     ("RSC 1 m up", |v| add(&mut v["rsc_m"], 1.0) && v["verdict"] == "safe"),
     ("hinge margin 20° up", |v| add(&mut v["hinge_margin_deg"], 20.0)),
     ("another verdict", verdict),
