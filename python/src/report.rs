@@ -41,19 +41,21 @@ impl Report {
     #[getter]
     fn claims(&self) -> Vec<(String, &'static str)> {
         let word = |outcome: &Outcome| match outcome {
-            Outcome::Confirmed => "confirmed",
+            Outcome::Confirmed | Outcome::Remarked(_) => "confirmed",
             Outcome::NotConfirmed(_) => "not confirmed",
             Outcome::Malformed(_) => "malformed",
         };
         self.0.claims.iter().map(|(claim, outcome)| (claim.clone(), word(outcome))).collect()
     }
 
-    /// What is wrong with claims that are not confirmed, in words.
+    /// What is wrong with claims that are not confirmed, and remarks, in words.
     #[getter]
     fn findings(&self) -> Vec<String> {
         let found = |(claim, outcome): &(String, Outcome)| match outcome {
             Outcome::Confirmed => Vec::new(),
-            Outcome::NotConfirmed(findings) => findings.iter().map(|f| format!("{}: {}", f.claim, f.detail)).collect(),
+            Outcome::Remarked(findings) | Outcome::NotConfirmed(findings) => {
+                findings.iter().map(|f| format!("{}: {}", f.claim, f.detail)).collect()
+            }
             Outcome::Malformed(why) => vec![format!("{claim}: malformed: {why}")],
         };
         self.0.claims.iter().flat_map(found).collect()
@@ -72,7 +74,7 @@ impl Report {
     }
 
     fn __repr__(&self) -> String {
-        let refuted = self.0.claims.iter().filter(|(_, outcome)| *outcome != Outcome::Confirmed).count();
+        let refuted = self.0.claims.iter().filter(|(_, outcome)| !outcome.holds()).count();
         match refuted {
             0 => format!("<Report: {} claims, all confirmed>", self.0.claims.len()),
             _ => format!("<Report: {refuted} of {} claims not confirmed>", self.0.claims.len()),

@@ -9,6 +9,10 @@ use pyo3::types::PyDict;
 #[pyclass(frozen, module = "netcert")]
 pub(crate) struct Verification(pub(crate) Found);
 
+fn words(Complaint { grade, detail }: Complaint) -> String {
+    format!("{}: {detail}", grade.word())
+}
+
 #[pymethods]
 impl Verification {
     /// Whether every claim is confirmed.
@@ -38,11 +42,13 @@ impl Verification {
     /// What is wrong with claims that are not confirmed, in words.
     #[getter]
     fn complaints(&self) -> Vec<String> {
-        let words = |Complaint { malformed, detail }| match malformed {
-            true => format!("malformed: {detail}"),
-            false => format!("not confirmed: {detail}"),
-        };
         self.0.complaints().map(words).collect()
+    }
+
+    /// What is displayed and is not so, beside claims that are confirmed, in words.
+    #[getter]
+    fn remarks(&self) -> Vec<String> {
+        self.0.remarks().map(words).collect()
     }
 
     fn __repr__(&self) -> String {

@@ -139,7 +139,7 @@ impl SetClaim<'_> {
             let mut all = found.remove(&row.edge).unwrap_or_default();
             match self.without_claims(row, span.unknown) {
                 Outcome::Confirmed => {}
-                Outcome::NotConfirmed(more) => all.extend(more),
+                Outcome::Remarked(more) | Outcome::NotConfirmed(more) => all.extend(more),
                 malformed @ Outcome::Malformed(_) => return malformed,
             }
             if span.unknown.is_none() {

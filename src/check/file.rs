@@ -45,7 +45,7 @@ impl Report {
     /// Whether every claim is confirmed.
     #[must_use]
     pub fn confirmed(&self) -> bool {
-        self.claims.iter().all(|(_, outcome)| *outcome == Outcome::Confirmed)
+        self.claims.iter().all(|(_, outcome)| outcome.holds())
     }
 }
 
@@ -117,8 +117,7 @@ impl Document {
         found.extend(self.tubes(&along));
         for claim in CLAIMS {
             let own: Vec<Finding> = found.iter().filter(|f| f.claim.starts_with(claim)).cloned().collect();
-            let outcome = if own.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(own) };
-            claims.push((claim.to_owned(), outcome));
+            claims.push((claim.to_owned(), Outcome::of(own)));
         }
     }
 

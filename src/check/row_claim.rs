@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::rows::CertificateRow;
 use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named as _;
-use netcert_check::{Finding, Outcome, SpanClaim};
+use netcert_check::{Finding, Outcome, SpanClaim, Weight};
 
 impl CertificateRow {
     pub(super) fn has_numbers(&self) -> bool {
@@ -46,8 +46,8 @@ impl CertificateRow {
     /// without a bound are dropped.
     pub(super) fn outcome(&self, mut found: Vec<Finding>) -> Outcome {
         if self.verdict != Verdict::Safe && self.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
-            found.retain(|finding| !finding.unbounded);
+            found.retain(|finding| finding.weight != Weight::Unbounded);
         }
-        if found.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(found) }
+        Outcome::of(found)
     }
 }

@@ -73,7 +73,7 @@ impl Sign {
 /// Refuses a file whose claims are not all confirmed: nobody should vouch for such a file by mistake.
 fn confirmed(path: &Path, text: &str) -> anyhow::Result<()> {
     let report = check::certificate(text);
-    let Some((claim, outcome)) = report.claims.iter().find(|(_, outcome)| *outcome != Outcome::Confirmed) else {
+    let Some((claim, outcome)) = report.claims.iter().find(|(_, outcome)| !outcome.holds()) else {
         return Ok(());
     };
     let why = match outcome {

@@ -44,7 +44,8 @@ Examples:
 Every claim is computed again: geometry, motion along the plan, straight gains, tubes, leeway,
 hinges, RSC and hashes. A claim is confirmed if the computed bound is at most 1 mm below the claimed
 one. Otherwise it is not confirmed, and the output says by how much and where. A claim that cannot
-be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed.
+be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed. A remark
+is about what no claim rests on: the named limiting place has more room than the RSC.
 
 With --key the signature is checked first. What is not signed, is signed with another key, or was
 changed after it was signed, is refused with status 1. Without --key a signature is checked only with
@@ -109,9 +110,10 @@ impl Verify {
         found.sets.iter().for_each(|checked| count(&mut table, checked));
         table.write(&mut out, "")?;
         let complaints: Vec<Complaint> = found.complaints().collect();
-        for Complaint { malformed, detail } in complaints.iter().take(MOST_LISTED) {
-            let word = if *malformed { "malformed" } else { "not confirmed" };
-            writeln!(out, "{word:<13}  {}", printable(detail))?;
+        for Complaint { grade, detail } in
+            complaints.iter().take(MOST_LISTED).chain(found.remarks().take(MOST_LISTED).collect::<Vec<_>>().iter())
+        {
+            writeln!(out, "{:<13}  {}", grade.word(), printable(detail))?;
         }
         out.flush()?;
         session.progress.say(NOT_CHECKED);
@@ -184,7 +186,7 @@ fn verify_file(path: &Path, keys: &[PublicKey]) -> anyhow::Result<()> {
     if report.confirmed() {
         return Ok(());
     }
-    let refuted = report.claims.iter().filter(|(_, outcome)| *outcome != Outcome::Confirmed).count();
+    let refuted = report.claims.iter().filter(|(_, outcome)| !outcome.holds()).count();
     bail!("{}: {refuted} of {} claims are not confirmed", path.display(), report.claims.len())
 }
 
@@ -204,8 +206,9 @@ fn lines(report: &Report) -> Vec<String> {
         match outcome {
             Outcome::Confirmed => lines.push(format!("confirmed      {claim}")),
             Outcome::Malformed(why) => lines.push(format!("malformed      {}", printable(why))),
-            Outcome::NotConfirmed(findings) => {
-                lines.extend(findings.iter().map(|f| format!("not confirmed  {}: {}", f.claim, printable(&f.detail))));
+            Outcome::Remarked(findings) | Outcome::NotConfirmed(findings) => {
+                let word = if outcome.holds() { "remark" } else { "not confirmed" };
+                lines.extend(findings.iter().map(|f| format!("{word:<13}  {}: {}", f.claim, printable(&f.detail))));
             }
         }
     }

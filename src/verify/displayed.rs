@@ -1,7 +1,7 @@
 //! Checks the columns of edges that repeat what the database says of their roads: a reader of the table sees these, and certificates use
 //! the road's.
 
-use super::{Complaint, VerifyError};
+use super::{Complaint, Grade, VerifyError};
 use crate::network::{Edge, Network};
 use crate::rows::EdgeFacts;
 use crate::store::Database;
@@ -17,7 +17,10 @@ pub(super) fn check(database: &mut Database, network: &Network) -> Result<Vec<Co
             None => Some("its road is not there".to_owned()),
         };
         complaints.extend(
-            detail.map(|detail| Complaint { malformed: true, detail: format!("edge {}: {detail}", facts.edge_id) }),
+            detail.map(|detail| Complaint {
+                grade: Grade::Malformed,
+                detail: format!("edge {}: {detail}", facts.edge_id),
+            }),
         );
     }
     Ok(complaints)

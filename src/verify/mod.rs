@@ -9,7 +9,7 @@ mod records;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::check::{Outcome, SetClaim, SetReport, TurnsClaim};
+use crate::check::{Finding, Outcome, SetClaim, SetReport, TurnsClaim};
 use crate::evidence::{self, Entry};
 use crate::network::Network;
 use crate::osm::facts::Policy;
@@ -73,13 +73,36 @@ pub struct Verification {
     pub sets: Vec<Checked>,
 }
 
-/// A claim that is not confirmed.
+/// A claim that is not confirmed, or a remark.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Complaint {
-    /// Whether the claim cannot be read or contradicts itself. Otherwise it can, and does not follow.
-    pub malformed: bool,
+    /// How bad it is.
+    pub grade: Grade,
     /// Which claim, and what is wrong with it.
     pub detail: String,
+}
+
+/// How bad a complaint is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grade {
+    /// All claims hold. What is displayed beside them is not so.
+    Remark,
+    /// A claim does not follow.
+    NotConfirmed,
+    /// A claim cannot be read or contradicts itself.
+    Malformed,
+}
+
+impl Grade {
+    /// The word that `verify` prints.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Remark => "remark",
+            Self::NotConfirmed => "not confirmed",
+            Self::Malformed => "malformed",
+        }
+    }
 }
 
 impl Verification {
@@ -91,7 +114,16 @@ impl Verification {
 
     /// All claims that are not confirmed.
     pub fn complaints(&self) -> impl Iterator<Item = Complaint> {
-        self.records.iter().cloned().chain(self.sets.iter().flat_map(Checked::complaints))
+        self.findings().filter(|complaint| complaint.grade != Grade::Remark)
+    }
+
+    /// What is displayed and is not so, beside claims that hold.
+    pub fn remarks(&self) -> impl Iterator<Item = Complaint> {
+        self.findings().filter(|complaint| complaint.grade == Grade::Remark)
+    }
+
+    fn findings(&self) -> impl Iterator<Item = Complaint> {
+        self.records.iter().cloned().chain(self.sets.iter().flat_map(Checked::findings))
     }
 }
 
@@ -113,7 +145,7 @@ impl Checked {
         let mut counts: BTreeMap<&str, [u64; 3]> = BTreeMap::new();
         for row in &self.report.rows {
             let slot = match row.outcome {
-                Outcome::Confirmed => 0,
+                Outcome::Confirmed | Outcome::Remarked(_) => 0,
                 Outcome::NotConfirmed(_) => 1,
                 Outcome::Malformed(_) => 2,
             };
@@ -122,18 +154,19 @@ impl Checked {
         counts
     }
 
-    /// Certificates that are not confirmed.
-    pub fn complaints(&self) -> impl Iterator<Item = Complaint> {
-        self.report.rows.iter().filter_map(|row| {
-            let (malformed, why) = match &row.outcome {
+    /// Certificates that are not confirmed, and remarks about others.
+    fn findings(&self) -> impl Iterator<Item = Complaint> {
+        let joined = |found: &[Finding]| {
+            found.iter().map(|f| format!("{}: {}", f.claim, f.detail)).collect::<Vec<_>>().join("; ")
+        };
+        self.report.rows.iter().filter_map(move |row| {
+            let (grade, why) = match &row.outcome {
                 Outcome::Confirmed => return None,
-                Outcome::NotConfirmed(found) => {
-                    let each: Vec<_> = found.iter().map(|f| format!("{}: {}", f.claim, f.detail)).collect();
-                    (false, each.join("; "))
-                }
-                Outcome::Malformed(why) => (true, why.clone()),
+                Outcome::Remarked(found) => (Grade::Remark, joined(found)),
+                Outcome::NotConfirmed(found) => (Grade::NotConfirmed, joined(found)),
+                Outcome::Malformed(why) => (Grade::Malformed, why.clone()),
             };
-            Some(Complaint { malformed, detail: format!("{} {} {}: {why}", self.vehicle_id, self.kind.word(), row.id) })
+            Some(Complaint { grade, detail: format!("{} {} {}: {why}", self.vehicle_id, self.kind.word(), row.id) })
         })
     }
 }
@@ -176,7 +209,7 @@ pub fn verify(
             add(Kind::Turn, request.turns(&mut database, (&network, facts), (&set, &settings), stop)?);
         } else if !facts.is_empty() {
             let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
-            records.push(Complaint { malformed: true, detail });
+            records.push(Complaint { grade: Grade::Malformed, detail });
         }
     }
     Ok(Verification { records, sets })
@@ -291,7 +324,7 @@ fn missing_turns(
 fn missing(set: &CertifiedSet, kind: Kind, there: &[u32], all: impl Iterator<Item = i64>) -> Vec<Complaint> {
     let lacking = (0_u32..).zip(all).filter(|(index, _)| there.binary_search(index).is_err());
     let complaint = |(_, id): (u32, i64)| Complaint {
-        malformed: true,
+        grade: Grade::Malformed,
         detail: format!("{} {} {id}: it has no certificate", set.vehicle_id, kind.word()),
     };
     lacking.map(complaint).collect()
@@ -305,7 +338,7 @@ fn measurements(database: &mut Database, network: &Network) -> Result<Vec<Compla
     evidence::decide(network, &mut again);
     let differ = kept.iter().zip(&again).filter(|(kept, again)| kept != again);
     let complaint = |(kept, _): (&Entry, &Entry)| Complaint {
-        malformed: false,
+        grade: Grade::NotConfirmed,
         detail: format!("measurement {}: its place, or whether it counts there, is not what follows from it", kept.no),
     };
     Ok(differ.map(complaint).collect())

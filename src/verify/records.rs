@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Complaint, VerifyError};
+use super::{Complaint, Grade, VerifyError};
 use crate::account::AccountRow;
 use crate::store::Database;
 use crate::vehicle::Vehicle;
@@ -32,14 +32,14 @@ pub(super) fn check(database: &mut Database, source: Option<&Path>) -> Result<Ve
             && hash_of(source)? != *said
         {
             let detail = format!("run {}: {} has another hash", k + 1, source.display());
-            complaints.push(Complaint { malformed: false, detail });
+            complaints.push(Complaint { grade: Grade::NotConfirmed, detail });
         }
     }
     Ok(complaints)
 }
 
 fn malformed(detail: String) -> Complaint {
-    Complaint { malformed: true, detail }
+    Complaint { grade: Grade::Malformed, detail }
 }
 
 /// The hash of a source, as databases keep it.

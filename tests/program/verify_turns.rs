@@ -50,6 +50,17 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
     assert!(survivors.is_empty(), "{survivors:#?}");
 }
 
+/// A limiting place with more room than the RSC promises nothing too much: the RSC is too low there. It is told, and every claim holds.
+#[test]
+fn a_limiting_place_with_more_room_is_a_remark() {
+    let place = Place::with_wide_demo("AU-SEMI19");
+    let wide = "verdict_no = 0 AND limiting_at < 2 AND rsc_mm > 20";
+    assert!(place.sql(&format!("UPDATE turn_certificate_compact SET rsc_mm = 20 WHERE {wide}")) > 0);
+    let told = place.netcert("verify --db demo.gpkg --vehicle AU-SEMI19").succeeds().out();
+    assert!(told.contains("remark") && told.contains("has more room than the RSC"), "{told}");
+    assert!(!told.contains("not confirmed  AU") && !told.contains("malformed  AU"), "{told}");
+}
+
 /// Where radii are a few metres, stations must lie close to follow from each other, and the checker must ask its adjoint early.
 #[test]
 fn turns_of_a_cart_train_in_its_lane_are_confirmed() {

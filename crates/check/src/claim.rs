@@ -44,21 +44,52 @@ const LIMITING_BEYOND: f64 = 8.0;
 pub enum Outcome {
     /// Proved, within the tolerance.
     Confirmed,
+    /// Proved, too. The remarks say what the certificate displays beside its claims and is not so.
+    Remarked(Vec<Finding>),
     /// Not proved; says by how much the bound falls short, and where.
     NotConfirmed(Vec<Finding>),
     /// A value is missing, impossible or contradicts another.
     Malformed(String),
 }
 
-/// One claim that is not proved.
+impl Outcome {
+    /// The outcome for what was found.
+    #[must_use]
+    pub fn of(found: Vec<Finding>) -> Self {
+        match found.iter().map(|finding| finding.weight).max() {
+            None => Self::Confirmed,
+            Some(Weight::Remark) => Self::Remarked(found),
+            Some(Weight::Unbounded | Weight::Refuted) => Self::NotConfirmed(found),
+        }
+    }
+
+    /// Whether all claims are proved. Remarks do not count against them.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        matches!(self, Self::Confirmed | Self::Remarked(_))
+    }
+}
+
+/// How much a finding counts, the least first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Weight {
+    /// Nothing is promised too much, but what is displayed is not so.
+    Remark,
+    /// There is no bound at all at that place. The claim is not proved, but nothing contradicts it either.
+    Unbounded,
+    /// The claim is not proved.
+    Refuted,
+}
+
+/// One claim that is not proved, or one remark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Name of the claim: `rsc_m`, `hinge_margin_deg`, `safe` …
     pub claim: String,
     /// Size and place of the difference, in words.
     pub detail: String,
-    /// There is no bound at all at that place. The claim is not proved, but nothing contradicts it either.
-    pub unbounded: bool,
+    /// How much it counts.
+    pub weight: Weight,
 }
 
 /// The claims about a span of stations.
@@ -153,7 +184,7 @@ impl<'a> Subject<'a> {
             for i in own {
                 let margin = claims[i].hinge_margin_rad;
                 if let Some(short) = margin.and_then(|margin| self.hinges(swept, &claims[i].stations, margin)) {
-                    findings[i].push(Finding { unbounded: short.1, ..finding("hinge_margin_deg", &short.0) });
+                    findings[i].push(Finding { weight: short.1, ..finding("hinge_margin_deg", &short.0) });
                 }
             }
         }
@@ -212,7 +243,8 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Checks the limiting place: it must be on the span and have hardly more room than the RSC.
+    /// Checks the limiting place: it must be on the span and have hardly more room than the RSC. More room there is a remark, since the RSC
+    /// is then too low by so much.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -ASTRAY_M)?);
         // How far a body is outside of an area is not measured here (`plane`). Far inside, the prover measures roughly. Between γ = 1 and
@@ -244,7 +276,8 @@ impl<'a> Subject<'a> {
         let roomy =
             !filtered.lacks(&Targets(targets), unit) && filtered.cramped(&in_areas, Some((unit, side)))[0].is_none();
         roomy.then(|| {
-            finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
+            let detail = format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side");
+            Finding { weight: Weight::Remark, ..finding("limiting", &detail) }
         })
     }
 
@@ -307,8 +340,7 @@ impl<'a> Subject<'a> {
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((short_m, at)) = worst {
-                let unbounded = short_m.is_infinite();
-                findings[i].push(Finding { unbounded, ..finding("rsc_m", &self.describe(short_m, at)) });
+                findings[i].push(Finding { weight: weight(short_m), ..finding("rsc_m", &self.describe(short_m, at)) });
             }
         }
     }
@@ -323,8 +355,8 @@ impl<'a> Subject<'a> {
         let asked: Vec<_> = own.iter().map(|&(i, target)| (steps(i), target)).collect();
         for ((i, _), worst) in own.iter().zip(swept.cramped(&asked, None)) {
             if let Some(worst) = worst {
-                let unbounded = worst.short_m.is_infinite();
-                findings[*i].push(Finding { unbounded, ..finding("rsc_m", &self.describe_cramped(&worst)) });
+                let weight = weight(worst.short_m);
+                findings[*i].push(Finding { weight, ..finding("rsc_m", &self.describe_cramped(&worst)) });
             }
         }
     }
@@ -366,7 +398,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Why a hinge margin is not proved while any point of the vehicle is on the span.
-    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, bool)> {
+    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, Weight)> {
         let stretches = self.stretches(stations);
         let least = margin_rad - TOLERANCE_RAD;
         let steps = swept.steps(stretches);
@@ -381,7 +413,7 @@ impl<'a> Subject<'a> {
                 }
             }
         }
-        worst.map(|(short, text)| (text, short.is_infinite()))
+        worst.map(|(short, text)| (text, weight(short)))
     }
 }
 
@@ -400,5 +432,10 @@ fn asked_alone(leeway_m: f64) -> f64 {
 /// A claim that is not proved, with the reason.
 #[must_use]
 pub fn finding(claim: &str, detail: &str) -> Finding {
-    Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false }
+    Finding { claim: claim.to_owned(), detail: detail.to_owned(), weight: Weight::Refuted }
+}
+
+/// The weight of a claim that lacks so much.
+fn weight(short: f64) -> Weight {
+    if short.is_infinite() { Weight::Unbounded } else { Weight::Refuted }
 }

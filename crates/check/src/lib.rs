@@ -44,7 +44,7 @@ mod search;
 mod tubes;
 
 pub use chain::Chain;
-pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
 pub use interval::Interval;
 pub use leeway::Swept;
 pub use road::RoadError;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::chain::Chain;
-use crate::claim::{SpanClaim, Subject};
+use crate::claim::{SpanClaim, Subject, Weight};
 use crate::drawn::{chain, random, unit};
 use netcert_base::corridor::CurvatureProfile;
 
@@ -163,7 +163,7 @@ fn a_narrower_area_is_refuted_and_the_place_is_named() {
     let found = subject.check(&[claim(70..90, rsc_m)]);
     assert_eq!(found[0].len(), 1);
     assert!(found[0][0].detail.contains("in an area"), "{}", found[0][0].detail);
-    assert!(!found[0][0].unbounded);
+    assert_eq!(found[0][0].weight, Weight::Refuted);
     assert!(subject.check(&[claim(70..90, rsc_m - 0.004)])[0].is_empty());
 }
 
