@@ -83,7 +83,7 @@
 //!
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 
-pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch};
+pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
 pub use netcert_kernel::{published, stet};
 
 pub mod account;
@@ -125,4 +125,3 @@ mod sqlite;
 pub mod store;
 pub mod turns;
 pub mod verify;
-pub mod words;

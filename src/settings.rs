@@ -4,6 +4,7 @@
 //! missing, unknown, of another type or out of range is never replaced by a default. A database stores the text with each set
 //! of certificates; a new computation of the set reads the settings from it.
 
+use netcert_base::named;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -42,6 +43,8 @@ pub enum Needs {
     /// For edges and turns. A turn takes as long to search as it takes to certify several turns.
     All,
 }
+
+named!(Needs { Off = "off", Edges = "edges", All = "all" });
 
 impl Default for Settings {
     /// The settings of `ingest` without options.

@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use netcert::explain::{self, Explanation, TurnExplanation};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
+use netcert::osm::facts::highway;
 use netcert::picture;
 use netcert::pipeline;
 use netcert::rows::{EdgeRow, Measurement};
@@ -17,7 +18,7 @@ use netcert::stop::Stop;
 use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
-use netcert::words::{Named, highway, verdict_words};
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::certify_options;

@@ -6,6 +6,7 @@
 mod roads;
 mod row;
 
+use netcert_base::named;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter::Peekable;
 
@@ -33,6 +34,14 @@ pub enum Standing {
     /// Unknown.
     Unknown,
 }
+
+named!(Standing {
+    Safe = "safe",
+    Conditional = "conditional",
+    Unsafe = "unsafe",
+    Forbidden = "forbidden",
+    Unknown = "unknown",
+});
 
 impl Standing {
     fn new(certificate: &CertificateRow, need_is_known: bool) -> Self {

@@ -3,6 +3,7 @@
 //! Of several measurements of one place the latest counts; where dates are equal or missing, the least. Every choice between rows, and every
 //! difference from the map, is reported. Nothing here knows databases or vehicles.
 
+use netcert_base::named;
 use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -24,6 +25,8 @@ pub enum State {
     Ambiguous,
 }
 
+named!(State { Matched = "matched", Unmatched = "unmatched", Ambiguous = "ambiguous" });
+
 /// What becomes of a matched measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Usage {
@@ -34,6 +37,8 @@ pub enum Usage {
     /// No certificate uses such a quantity, or the value says nothing.
     Kept,
 }
+
+named!(Usage { Counts = "counts", Superseded = "superseded", Kept = "kept" });
 
 /// A place of the network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

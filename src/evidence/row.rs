@@ -3,6 +3,7 @@
 //! A row is one measurement: what, how much, how sure, who says so, and where. Nothing here knows the network.
 
 use crate::osm::LonLat;
+use netcert_base::named;
 
 /// What was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -24,6 +25,17 @@ pub enum Quantity {
     /// The paved surface of a junction, as a polygon.
     Surface,
 }
+
+named!(Quantity {
+    CarriagewayWidth = "carriageway_width",
+    DirectionWidth = "direction_width",
+    LaneWidth = "lane_width",
+    KerbRadius = "kerb_radius",
+    MaxHeight = "max_height",
+    MaxWeight = "max_weight",
+    DrivableBy = "drivable_by",
+    Surface = "surface",
+});
 
 /// The value that was measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +88,8 @@ pub enum Along {
     /// Against them.
     Backward,
 }
+
+named!(Along { Both = "both", Forward = "forward", Backward = "backward" });
 
 /// One measurement.
 #[derive(Debug, Clone, PartialEq)]

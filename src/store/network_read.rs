@@ -9,10 +9,11 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
 use crate::network::{Areas, Crossings, Edge, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
+use crate::osm::facts::class_and_link;
 use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
-use crate::words::{Named, class_and_link};
+use crate::words::Named;
 
 use super::areas;
 use super::blob;

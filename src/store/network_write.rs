@@ -8,9 +8,10 @@ use rustc_hash::FxHashMap;
 
 use crate::network::Edge;
 use crate::osm::LonLat;
+use crate::osm::facts::highway;
 use crate::osm::facts::{CrossSection, Direction, Legal, Limit, RuleSet, Strip};
 use crate::rows::Bounds;
-use crate::words::{Named, highway};
+use crate::words::Named;
 
 use super::blob;
 use super::bulk::{Bulk, Takes};

@@ -6,9 +6,10 @@
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
 
+use crate::osm::facts::class_and_link;
 use crate::osm::facts::{Policy, RoadClass};
 use crate::rows::MainRoad;
-use crate::words::{Named as _, class_and_link};
+use crate::words::Named as _;
 
 use super::database::Database;
 use super::error::{StoreError, content};

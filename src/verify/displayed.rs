@@ -3,9 +3,10 @@
 
 use super::{Complaint, Grade, VerifyError};
 use crate::network::{Edge, Network};
+use crate::osm::facts::highway;
 use crate::rows::EdgeFacts;
 use crate::store::Database;
-use crate::words::{Named as _, highway};
+use crate::words::Named as _;
 
 /// Complaints about edges whose columns differ from their road.
 pub(super) fn check(database: &mut Database, network: &Network) -> Result<Vec<Complaint>, VerifyError> {

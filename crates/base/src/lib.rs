@@ -7,3 +7,4 @@ pub mod stop;
 pub mod vehicle;
 pub mod verdict;
 pub mod watch;
+pub mod words;

@@ -1,5 +1,6 @@
 //! What a map shows behind its roads: water, woods, rivers, coasts and names of places. No certificate rests on any of it.
 
+use netcert_base::named;
 use serde::{Deserialize, Serialize};
 
 use crate::osm::facts::Tags;
@@ -28,6 +29,19 @@ pub enum BackdropKind {
     /// place=hamlet
     Hamlet,
 }
+
+named!(BackdropKind {
+    Wood = "wood",
+    Water = "water",
+    Coast = "coast",
+    River = "river",
+    Canal = "canal",
+    City = "city",
+    Town = "town",
+    Suburb = "suburb",
+    Village = "village",
+    Hamlet = "hamlet",
+});
 
 /// The form that the objects of a kind have on a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,6 +10,7 @@ use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::SectionReader;
 use crate::osm::facts::speed::SpeedTags;
 use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, told};
+use crate::words::Named as _;
 
 /// Every reason for which [`way_facts`] leaves a way out.
 pub const LEFT_OUT_REASONS: [&str; 6] = [NO_HIGHWAY, NOT_A_ROAD, NOT_IN_USE, AREA, MINOR_SERVICE, TRACK];
@@ -208,4 +209,28 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         reference: basics.reference,
         notes,
     })
+}
+
+/// The value of `highway`: the class, with `_link` for links.
+#[must_use]
+pub fn highway(class: RoadClass, link: bool) -> String {
+    format!("{}{}", class.name(), if link { "_link" } else { "" })
+}
+
+/// The reverse of [`highway`].
+pub(crate) fn class_and_link(highway: &str) -> Option<(RoadClass, bool)> {
+    let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
+    Some((RoadClass::named(class)?, link))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{class_and_link, highway};
+    use crate::osm::facts::RoadClass;
+
+    #[test]
+    fn links_come_back_from_their_word() {
+        assert_eq!(class_and_link(&highway(RoadClass::Motorway, true)), Some((RoadClass::Motorway, true)));
+        assert_eq!(class_and_link("link"), None);
+    }
 }

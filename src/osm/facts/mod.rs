@@ -30,6 +30,7 @@ mod told;
 mod value;
 mod widths;
 
+use netcert_base::named;
 use std::num::NonZeroU8;
 
 use serde::{Deserialize, Serialize};
@@ -38,7 +39,8 @@ use crate::osm::StringId;
 
 pub use areas::{AreaKind, area_kind};
 pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
-pub use class::{LEFT_OUT_REASONS, way_facts};
+pub(crate) use class::class_and_link;
+pub use class::{LEFT_OUT_REASONS, highway, way_facts};
 pub use country::{Countries, CountriesError, Place};
 pub use given::{GivenRoad, given_class};
 pub use legal::{At, Judgement, RuleSet};
@@ -78,6 +80,20 @@ pub enum RoadClass {
     Busway,
 }
 
+named!(RoadClass {
+    Motorway = "motorway",
+    Trunk = "trunk",
+    Primary = "primary",
+    Secondary = "secondary",
+    Tertiary = "tertiary",
+    Unclassified = "unclassified",
+    Residential = "residential",
+    LivingStreet = "living_street",
+    Service = "service",
+    Track = "track",
+    Busway = "busway",
+});
+
 /// Directions of travel that exist, relative to the way's node order. A roundabout implies forward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Oneway {
@@ -89,6 +105,8 @@ pub enum Oneway {
     Backward,
 }
 
+named!(Oneway { No = "no", Forward = "forward", Backward = "backward" });
+
 /// Direction of travel of a directed edge relative to its way's node order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -98,6 +116,8 @@ pub enum Direction {
     /// Against the way's node order.
     Backward,
 }
+
+named!(Direction { Forward = "forward", Backward = "backward" });
 
 /// Origin of a width, weakest first. A certificate is only as good as its width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -114,6 +134,14 @@ pub enum WidthSource {
     /// Tagged, with a source that says surveyed or measured.
     Surveyed,
 }
+
+named!(WidthSource {
+    Assumed = "assumed",
+    FromLanes = "from_lanes",
+    Estimated = "estimated",
+    Tagged = "tagged",
+    Surveyed = "surveyed",
+});
 
 /// A strip of road that a vehicle may use in one direction of travel. Its edges are signed positions across the way's
 /// line, metres, positive to the left of *travel*. `left_m > right_m`.
@@ -146,6 +174,8 @@ pub enum Policy {
     /// The whole paved carriageway between its edges.
     Carriageway,
 }
+
+named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
 
 /// The strips of one direction of travel of one way. `None` means no usable width.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -225,6 +255,8 @@ pub enum Permission {
     /// no, private, agricultural, forestry …
     No,
 }
+
+named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 
 /// Facts from the tags of a way, independent of the country. Widths, lanes and kerb-side uses are private to this
 /// folder; `facts::cross_sections` reads them.

@@ -15,8 +15,9 @@ use super::summary::Numbers;
 use super::{GEOJSON, SCOPE, id};
 use crate::network::Network;
 use crate::osm::StringId;
+use crate::osm::facts::highway;
 use crate::rows::Bounds;
-use crate::words::{Named as _, highway, verdict_words};
+use crate::words::{Named as _, verdict_words};
 
 /// More edges are not drawn. The summary counts them all.
 const MOST_EDGES: usize = 20_000;

@@ -106,7 +106,7 @@ fn of_place(roads: &RoadIndex, place: Position) -> Found {
         "ref": null,
         "title": beside.unwrap_or(name),
         "by_ref": null,
-        "highway": edge.map(|edge| network.road(edge)).map(|road| crate::words::highway(road.class, road.link)),
+        "highway": edge.map(|edge| network.road(edge)).map(|road| crate::osm::facts::highway(road.class, road.link)),
         "ways": 0,
         "pieces": 0,
     });
@@ -129,7 +129,7 @@ fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<u32
         "ref": text(road.reference),
         "title": network.title(middle),
         "by_ref": null,
-        "highway": crate::words::highway(road.class, road.link),
+        "highway": crate::osm::facts::highway(road.class, road.link),
         "ways": 1,
         "pieces": edges.len(),
     });

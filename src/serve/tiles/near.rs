@@ -9,9 +9,10 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::roads::RoadIndex;
 use crate::network::Network;
+use crate::osm::facts::highway;
 use crate::osm::facts::{Policy, RoadClass};
 use crate::rows::{Bounds, MapEdge, MapNumbers};
-use crate::words::{Named as _, highway};
+use crate::words::Named as _;
 
 /// Fewer edges are not worth a second thread.
 pub(super) const LEAST_IN_PARALLEL: usize = 500;

@@ -12,9 +12,10 @@ use super::grid::{self, BUFFER, Place};
 use super::raster::{Raster, Said};
 use super::shape;
 use crate::osm::facts::WidthSource;
+use crate::osm::facts::highway;
 use crate::rows::MainRoad;
 use crate::verdict::Verdict;
-use crate::words::{Named, highway, verdict_words};
+use crate::words::{Named, verdict_words};
 
 /// The last zoom of the overview. Tiles of deeper zooms show each edge.
 pub(super) const LAST_ZOOM: u8 = 10;

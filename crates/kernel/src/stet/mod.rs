@@ -30,6 +30,7 @@ mod swept;
 mod track;
 mod tube;
 
+use netcert_base::named;
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -57,6 +58,8 @@ pub enum Side {
     /// Right of travel.
     Right,
 }
+
+named!(Side { Left = "left", Right = "right" });
 
 /// The place of the least leeway.
 #[derive(Debug, Clone, Copy, PartialEq)]
