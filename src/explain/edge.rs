@@ -10,6 +10,7 @@ use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Road, Stroke, destination_tag};
+use crate::osm::facts::highway;
 use crate::osm::facts::{Oneway, Policy, RuleSet, WidthSource};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
@@ -17,7 +18,7 @@ use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, cert
 use crate::stop::{Stop, Stopped};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
-use crate::words::{highway, verdict_words};
+use crate::words::verdict_words;
 
 /// Explains why an edge of the network is safe or unsafe for the vehicle of `model`. `None` if there is no such edge.
 ///
@@ -225,6 +226,14 @@ fn width_tags(road: &Road, source: Option<WidthSource>) -> Vec<String> {
     road.width_tags.iter().flat_map(|lines| lines.lines()).filter(behind).map(str::to_owned).collect()
 }
 
+/// The tags of narrow places on an edge. A tag of the whole road is none, unless there is no other.
+fn narrow_places(road: &Road, edge: &Edge) -> Vec<String> {
+    let of_road = road.legal[edge.direction as usize].passage_tags();
+    let (of_road, of_places): (Vec<_>, Vec<_>) =
+        edge.legal.passage_tags().into_iter().partition(|tag| of_road.contains(tag));
+    if of_places.is_empty() { of_road } else { of_places }
+}
+
 fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle) -> RoadFacts {
     let road = network.road(edge);
     let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
@@ -243,7 +252,7 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle)
         policy,
         width_source,
         width_tags: width_tags(road, width_source),
-        narrowed_by: if edge.narrowings.is_empty() { Vec::new() } else { edge.legal.passage_tags() },
+        narrowed_by: if edge.narrowings.is_empty() { Vec::new() } else { narrow_places(road, edge) },
         unreadable_widths: edge.legal.rules.iter().flat_map(RuleSet::unreadable_widths).map(str::to_owned).collect(),
         lane_shared: policy == Policy::Lane && road.oneway == Oneway::No && section.shares_lane(),
         destination_tag: destination_tag(network, edge, vehicle),

@@ -11,7 +11,7 @@ type Pairs = &'static [(&'static str, &'static str)];
 /// Tags of a way, tags of a node on it, and the tag that decides, with the verdict and its reason.
 struct Case(Pairs, Pairs, &'static str, &'static str);
 
-const CASES: [Case; 36] = [
+const CASES: [Case; 37] = [
     Case(&[("access", "no")], &[], "access=no", "forbidden access"),
     Case(
         &[("access", "private"), ("vehicle", "yes"), ("motor_vehicle", "military")],
@@ -63,6 +63,12 @@ const CASES: [Case; 36] = [
     Case(&[], &[("access", "no")], "access=no", "forbidden access"),
     Case(&[("maxheight", "4.5")], &[("maxheight", "3.5")], "maxheight=3.5", "forbidden height"),
     Case(&[("width", "7")], &[("traffic_calming", "choker"), ("width", "2.2")], "width=2.2", "unsafe width"),
+    Case(
+        &[("width", "7"), ("maxwidth", "2.8")],
+        &[("traffic_calming", "choker"), ("width", "2.2")],
+        "has a narrow place: traffic_calming=choker, width=2.2.",
+        "unsafe width",
+    ),
 ];
 
 #[test]
