@@ -37,6 +37,8 @@ pub struct MapNumbers {
     pub rsc_mm: Option<i64>,
     /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
     pub need_width_m: Option<f64>,
+    /// Whether the lane of that policy is the whole road, which both directions share.
+    pub shared: bool,
 }
 
 /// A thing behind the roads.

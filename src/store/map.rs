@@ -86,9 +86,9 @@ impl Database {
         bounds: Bounds,
         classes: &[RoadClass],
     ) -> Result<Vec<MapEdge<'static>>, StoreError> {
-        let [width, source] = width_columns(policy);
+        let ([width, source], shared) = (width_columns(policy), shared_column(policy));
         let mut sql = format!(
-            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, e.edge_id, e.way_id, \
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, e.edge_id, e.way_id, \
              e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
              CROSS JOIN certificate_compact AS c \
@@ -117,9 +117,9 @@ impl Database {
     /// The file cannot be read, or an edge before the last certified one has no certificate. A vehicle that is not certified under this
     /// policy has no numbers.
     pub fn map_numbers(&mut self, (vehicle, policy): (&str, Policy)) -> Result<Vec<MapNumbers>, StoreError> {
-        let [width, source] = width_columns(policy);
+        let ([width, source], shared) = (width_columns(policy), shared_column(policy));
         let sql = format!(
-            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm FROM edge AS e \
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared} FROM edge AS e \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
              AND c.corridor_no = ? AND c.fid = e.fid ORDER BY e.fid"
@@ -193,15 +193,20 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge<'static>> {
     Ok(MapEdge {
         edge: fid.saturating_sub(1),
         numbers: map_numbers(row)?,
-        edge_id: row.try_get(7)?,
-        way_id: row.try_get(8)?,
-        direction: word(row, 9)?,
-        oneway: word(row, 10)?,
-        highway: row.try_get::<String, _>(11)?.into(),
-        name: row.try_get::<Option<String>, _>(12)?.map(Into::into),
-        reference: row.try_get::<Option<String>, _>(13)?.map(Into::into),
-        line: line(row, 14, || format!("edge {fid}"))?,
+        edge_id: row.try_get(8)?,
+        way_id: row.try_get(9)?,
+        direction: word(row, 10)?,
+        oneway: word(row, 11)?,
+        highway: row.try_get::<String, _>(12)?.into(),
+        name: row.try_get::<Option<String>, _>(13)?.map(Into::into),
+        reference: row.try_get::<Option<String>, _>(14)?.map(Into::into),
+        line: line(row, 15, || format!("edge {fid}"))?,
     })
+}
+
+/// The column that says whether both directions share the strip of that policy beyond what its name says.
+fn shared_column(policy: Policy) -> &'static str {
+    if policy == Policy::Lane { "e.lane_shared" } else { "0" }
 }
 
 /// The numbers of a row that begins with its `fid`.
@@ -215,6 +220,7 @@ fn map_numbers(row: &SqliteRow) -> Sql<MapNumbers> {
         })?,
         rsc_mm: row.try_get(5)?,
         need_width_m: numbers::centimetres(row, 6)?,
+        shared: row.try_get(7)?,
     })
 }
 

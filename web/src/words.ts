@@ -29,6 +29,9 @@ export const verdictWords: Record<VerdictName, { name: string; meaning: string }
   unknown: { name: "Unknown", meaning: "nothing can be said: no width, broken geometry, an unreadable limit" },
 };
 
+/** What a striped certified line means. */
+export const SHARED_LANE = "Certified on the whole road: oncoming traffic waits";
+
 /** What the line of a route stands for, by its kind. */
 export const routeWords: Record<"certified" | "conditional" | "blocked", string> = {
   certified: "Certified as a whole",

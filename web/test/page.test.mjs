@@ -17,6 +17,28 @@ inPage("shows roads, a vehicle and how much of the roads it may use", "#v=AU-SEM
   assert.match(await text(page, ".maplibregl-ctrl-attrib"), /OpenStreetMap/);
 });
 
+inPage("a certified lane that both directions share has a stripe, and the legend says what it means", "#v=AU-SEMI19", async (page) => {
+  const found = await page.evaluate(() => globalThis.netcert.map.querySourceFeatures("roads", { sourceLayer: "edge" }).map(({ properties }) => properties));
+  const shared = found.find(({ verdict, shared }) => verdict === "safe" && shared);
+  const own = found.find(({ verdict, shared }) => verdict === "safe" && !shared);
+  for (const [edge, is] of [[shared, true], [own, false]]) {
+    const said = await ask(`/api/explain/${edge.edge_id}?vehicle=AU-SEMI19&policy=lane`);
+    assert.equal(said.road.lane_shared, is, edge.edge_id);
+  }
+  const striped = await page.evaluate(async () => {
+    const { map } = globalThis.netcert;
+    if (map.getZoom() < 14.5) {
+      map.jumpTo({ zoom: 14.5 });
+      await new Promise((done) => map.once("idle", done));
+    }
+    return map.querySourceFeatures("roads", { sourceLayer: "edge", filter: map.getFilter("edge-shared") }).map(({ properties }) => properties.verdict);
+  });
+  assert.ok(striped.length > 0 && striped.every((verdict) => verdict === "safe"));
+  assert.match(await text(page, ".shared-key"), /oncoming traffic waits/);
+  await page.evaluate(() => globalThis.netcert.store.set({ policy: "carriageway" }));
+  await page.waitForSelector(".shared-key", { state: "hidden" });
+});
+
 inPage("kilometres are those of the API", "#v=AU-ATRIPLE53", async (page) => {
   const { certificates } = await ask("/api/stats?policy=lane");
   const km = certificates.filter((row) => row.vehicle === "AU-ATRIPLE53" && row.verdict === "safe").reduce((sum, row) => sum + row.km, 0);

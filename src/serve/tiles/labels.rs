@@ -140,6 +140,7 @@ mod tests {
                 verdict: Verdict::Unknown(UnknownReason::Width),
                 rsc_mm: None,
                 need_width_m: None,
+                shared: false,
             },
             line: points.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect(),
         }

@@ -143,7 +143,7 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], place: Place) -> Vec<Vec<[i32; 
 }
 
 fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
-    let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m } = row.numbers;
+    let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m, shared } = row.numbers;
     let (verdict, reason) = verdict_words(verdict);
     layer.feature(Some(u64::from(row.edge) + 1), lines, |tags| {
         tags.only("edge_id", Value::Text(&row.edge_id.to_string()));
@@ -158,6 +158,7 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
         let rsc_mm = rsc_mm.map(|mm| if z < FIRST_IN_FULL { mm.div_euclid(10) * 10 } else { mm });
         tags.number("rsc_m", rsc_mm.map(metres));
         tags.truth("left", left);
+        tags.truth("shared", shared.then_some(true));
         tags.text("width_source", width_source.map(WidthSource::name));
         if z >= FIRST_IN_FULL {
             tags.add("way_id", Value::Whole(row.way_id));

@@ -337,6 +337,8 @@ export interface Condition {
 export interface ConditionalRoute extends Omit<Route, "drive" | "safe"> {
   safe: false;
   conditions: Condition[];
+  /** Whether measurements exactly as named certify the route. */
+  conditions_suffice: boolean;
 }
 
 export interface Obstacle {

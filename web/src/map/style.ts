@@ -54,6 +54,9 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
 const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
 const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
 
+/** From this zoom on, lines are wide enough for a stripe in them. */
+const SHARED_ZOOM = 14;
+
 /** How strong roads are drawn while changes or a route lie over them. */
 export const muted = (state: State): number => (state.changes ? 0.24 : complete(state.route) ? 0.5 : 1);
 
@@ -89,6 +92,25 @@ function edge(verdict: VerdictName, state: State, palette: Palette, ground: Grou
       "line-offset": offset(breadth[verdict], ground),
       "line-opacity": muted(state),
       ...(dash ? { "line-dasharray": dash } : {}),
+    },
+  };
+}
+
+/** A stripe in certified roads whose lane is the whole road: oncoming traffic has to wait there. */
+function sharedLane(state: State, palette: Palette, ground: Ground): LayerSpecification {
+  return {
+    id: "edge-shared",
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    minzoom: SHARED_ZOOM,
+    filter: ["all", filter("safe", state), ["==", ["get", "shared"], true]] as ExpressionSpecification,
+    layout: { "line-cap": "butt", "line-join": "round" },
+    paint: {
+      "line-color": palette.casing,
+      "line-width": width(0.3 * breadth.safe),
+      "line-offset": offset(breadth.safe, ground),
+      "line-opacity": muted(state),
     },
   };
 }
@@ -263,6 +285,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
       highlight("hover-edge", "edge", palette, ground),
       highlight("selected-edge", "edge", palette, ground),
       ...each(edge),
+      sharedLane(state, palette, ground),
       highlight("hover-turn", "turn", palette, ground),
       highlight("selected-turn", "turn", palette, ground),
       ...each(turn),

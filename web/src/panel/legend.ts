@@ -8,7 +8,7 @@ import type { ColourBy } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { Segmented } from "../ui/segmented.ts";
 import { length, roadLength, spoken } from "../units.ts";
-import { EVIDENCE, VERDICTS, evidenceWords, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
+import { EVIDENCE, VERDICTS, evidenceWords, SHARED_LANE, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
 
 export class Legend {
   readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
@@ -16,6 +16,7 @@ export class Legend {
   readonly #bar = h("div", { class: "bar", "aria-hidden": "true" });
   readonly #rows = h("div", { class: "legend-rows" });
   readonly #scale = h("div", { class: "scales" });
+  readonly #shared = sharedKey();
   readonly #by: Segmented<ColourBy>;
   #stats: VehicleStats | null = null;
 
@@ -31,7 +32,7 @@ export class Legend {
       (colourBy) => context.store.set({ colourBy }),
     );
     const by = h("div", { class: "labelled" }, h("span", { class: "label", "aria-hidden": "true" }, "Colour by"), this.#by.element);
-    this.element.append(this.#headline, this.#bar, this.#rows, by, this.#scale, routeKey());
+    this.element.append(this.#headline, this.#bar, this.#rows, by, this.#scale, this.#shared, routeKey());
     this.draw();
   }
 
@@ -56,6 +57,7 @@ export class Legend {
     );
     this.#rows.replaceChildren(...VERDICTS.map((name) => this.#row(name)));
     this.#scale.replaceChildren(...this.#scales());
+    this.#shared.hidden = state.policy !== "lane";
   }
 
   #row(name: VerdictName): HTMLElement {
@@ -111,6 +113,11 @@ function scale(name: string, steps: readonly Step[], colours: readonly string[])
 export function verdictKey(): HTMLElement {
   const row = (name: VerdictName) => h("span", { class: "key-item" }, h("i", { class: `line line-${name}`, "aria-hidden": "true" }), verdictWords[name].name);
   return h("div", { class: "compare-key", role: "group", "aria-label": "Lines of both maps" }, ...VERDICTS.map(row));
+}
+
+/** The line of certified roads whose lane is the whole road. */
+function sharedKey(): HTMLElement {
+  return h("p", { class: "key-item shared-key" }, h("i", { class: "line line-shared", "aria-hidden": "true" }), SHARED_LANE);
 }
 
 /** The lines of routes, which are seen while there is one. */
