@@ -25,14 +25,16 @@ impl Planner {
         }
         searching();
         let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
-        let Ok(Conditional { route, conditions, snapped }) = self.under_conditions(question, refuted, stop)? else {
+        let Ok(Conditional { route, conditions, suffices, snapped }) =
+            self.under_conditions(question, refuted, stop)?
+        else {
             return Ok(certified?);
         };
         // A way that passes without any condition is a certified route.
         if conditions.is_empty() {
             return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });
         }
-        let conditional = Some(Conditional { route, conditions, snapped: snapped.clone() });
+        let conditional = Some(Conditional { route, conditions, suffices, snapped: snapped.clone() });
         Ok(Answer { conditional, snapped, ..certified.unwrap_or_default() })
     }
 }

@@ -266,6 +266,7 @@ fn conditional_members(network: &Network, model: &Model, conditional: &Condition
         "safe": false,
         "certificate": certificate_members(route, &conditions),
         "conditions": conditions,
+        "conditions_suffice": conditional.suffices,
     });
     with(route_members(network, model, route), own)
 }

@@ -7,6 +7,7 @@ mod at_time;
 mod cli;
 mod columns;
 mod conditional;
+mod conditions_suffice;
 mod diff;
 mod engines;
 mod evidence;

@@ -59,6 +59,8 @@ pub(super) struct Fitted {
     pub(super) drive: Drive,
     pub(super) certified: Certified,
     pub(super) supposed: Suppositions,
+    /// Whether the search with nothing supposed finds the same, once everything is measured exactly as supposed.
+    pub(super) suffices: bool,
 }
 
 /// The places on a way for which nothing does. None if no single place is at fault.
@@ -89,8 +91,8 @@ impl Fitting {
         }
     }
 
-    fn fitted(self, certified: Certified) -> Fitted {
-        Fitted { drive: self.drive, certified, supposed: self.supposed }
+    fn fitted(self, certified: Certified, suffices: bool) -> Fitted {
+        Fitted { drive: self.drive, certified, supposed: self.supposed, suffices }
     }
 
     /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.
@@ -166,14 +168,14 @@ impl Fitter {
         // No search with nothing supposed is known to find these once they are measured.
         for whole in [level, whole.clone()] {
             if let Some(certified) = self.fresh(&whole, stop)? {
-                return Ok(Ok(whole.fitted(certified)));
+                return Ok(Ok(whole.fitted(certified, false)));
             }
         }
         if let Some(at) = self.suppose_until_safe(&mut whole, stop)? {
             return Ok(Err(Unfit(joint::parted(way.drive, at))));
         }
         Ok(match self.fresh(&whole, stop)? {
-            Some(certified) => Ok(whole.fitted(certified)),
+            Some(certified) => Ok(whole.fitted(certified, false)),
             // No single place is at fault.
             None => Err(Unfit(Vec::new())),
         })
@@ -188,7 +190,7 @@ impl Fitter {
             let places = match self.look(&mut fitting, stop)? {
                 Ok(looked) if looked.safe() => {
                     let certified = self.fresh(&fitting, stop)?;
-                    return Ok(certified.map(|certified| fitting.fitted(certified)));
+                    return Ok(certified.map(|certified| fitting.fitted(certified, true)));
                 }
                 Ok(looked) => failing(&looked).into_iter().map(|place| place.at).collect(),
                 Err(Refutation { at, .. }) => vec![at],

@@ -40,6 +40,9 @@ pub struct Conditional {
     pub route: Route,
     /// The conditions in driving order. Empty if the way passes as it is: then it is a certified route.
     pub conditions: Vec<Condition>,
+    /// Whether measurements that are exactly as the conditions say make the route a certified one. Otherwise the route needs them, and the
+    /// search may then ask for more.
+    pub suffices: bool,
     /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,
 }

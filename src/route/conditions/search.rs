@@ -77,12 +77,12 @@ impl Planner {
             let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
             let way = Way { drive: &found.drive, start, end };
             match fitter.fit(&way, &access, stop)? {
-                Ok(Fitted { drive, certified, supposed }) => {
+                Ok(Fitted { drive, certified, supposed, suffices }) => {
                     found.drive = drive;
                     let kerbs = &self.driver.permits.settings.kerbs;
                     let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
                     let route = self.route(&found, (start, end), certified);
-                    return Ok(Ok(Conditional { route, conditions, snapped }));
+                    return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                 }
                 Err(Unfit(places)) => {
                     let mut barred = false;
