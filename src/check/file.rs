@@ -12,7 +12,7 @@ use netcert_check::Chain;
 use netcert_check::Swept;
 use netcert_check::plan;
 use netcert_check::printed;
-use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
 
 /// Tolerance of nominal places, metres: the error of chords of a quarter of a station in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;
@@ -111,7 +111,11 @@ impl Document {
         for (subject, columns) in [(&along, [0, 1]), (&centred, [2, 3])] {
             let findings = subject.leeway_columns(columns.map(|column| self.leeway[column].as_slice()));
             for (column, detail) in columns.into_iter().zip(findings) {
-                found.extend(detail.map(|detail| finding(&format!("leeway.{}", COLUMNS[column]), &detail)));
+                let finding = |(detail, weight): (String, Weight)| Finding {
+                    weight,
+                    ..finding(&format!("leeway.{}", COLUMNS[column]), &detail)
+                };
+                found.extend(detail.map(finding));
             }
         }
         found.extend(self.tubes(&along));
@@ -132,6 +136,10 @@ impl Document {
             limiting: None,
         };
         let mut found: Vec<Finding> = along.check(&[claim]).remove(0);
+        // Where room is missing, nothing is promised, and a place without a bound contradicts nothing.
+        if rsc_m < 0.0 {
+            found.iter_mut().filter(|f| f.weight == Weight::Unbounded).for_each(|f| f.weight = Weight::Remark);
+        }
         let refused = rsc_m >= 0.0 && hinge_deg < 0.0;
         match (self.hinge_unit, along.filtered(self.vehicle.tracking_tolerance_m)) {
             (Some(unit), Some(swept)) if refused => {

@@ -42,8 +42,8 @@ impl CertificateRow {
         }
     }
 
-    /// The outcome for these findings. An unsafe verdict promises nothing, so for a row of too little room the findings
-    /// without a bound are dropped.
+    /// The outcome for these findings. An unsafe verdict promises nothing, so for a row of too little room a place without a bound
+    /// contradicts nothing, and is dropped.
     pub(super) fn outcome(&self, mut found: Vec<Finding>) -> Outcome {
         if self.verdict != Verdict::Safe && self.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
             found.retain(|finding| finding.weight != Weight::Unbounded);

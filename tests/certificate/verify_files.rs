@@ -40,6 +40,19 @@ fn honest_files_are_confirmed() {
     assert!(refused.is_empty(), "{} of {} are refused: {refused:#?}", refused.len(), cases());
 }
 
+/// On these a vehicle folds up metres outside of the road, where the two programs follow it for different ways. Their entries promise nothing
+/// there: what the checker does not find is a remark, and no claim is refused.
+#[test]
+fn entries_of_a_vehicle_that_folds_up_are_remarks() {
+    for index in [1031, 1062, 1138, 1421, 1549, 2022, 2358] {
+        let honest = written(&case(index));
+        let report = certificate(&sealed(&honest));
+        assert!(report.confirmed(), "{index}: {}", said(&report));
+        assert!(report.claims.iter().any(|(_, outcome)| matches!(outcome, Outcome::Remarked(_))), "{index}");
+        assert_eq!(honest["verdict"], "unsafe");
+    }
+}
+
 /// Name of a change, and the change itself. It returns whether there was anything to change.
 type Mutation = (&'static str, fn(&mut Value) -> bool);
 
