@@ -85,14 +85,16 @@
 
 pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
 pub use netcert_kernel::{published, stet};
+pub use netcert_osm::{account, osm};
+pub use netcert_roads::{corridor, network, turns};
 
-pub mod account;
+use netcert_osm::shape;
+
 pub mod certificate;
 pub mod certify;
 pub mod check;
 #[cfg(feature = "export")]
 pub mod cluster;
-pub mod corridor;
 pub mod diff;
 pub mod evidence;
 pub mod explain;
@@ -101,8 +103,6 @@ pub mod export;
 #[cfg(any(feature = "export", feature = "overture"))]
 mod folders;
 pub mod manoeuvres;
-pub mod network;
-pub mod osm;
 mod output_lock;
 #[cfg(feature = "overture")]
 pub mod overture;
@@ -118,10 +118,8 @@ pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod settings;
-mod shape;
 pub mod sign;
 mod sorter;
 mod sqlite;
 pub mod store;
-pub mod turns;
 pub mod verify;

@@ -11,7 +11,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Legal};
 
 /// Two pieces of road that form a corner, in order. A piece is known by its road and by where its shape begins.
-pub(crate) type Pieces = [(u32, u32); 2];
+pub type Pieces = [(u32, u32); 2];
 
 /// Limits of an edge that count in place of the map's. `None` leaves the map's limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,7 +87,7 @@ impl Site {
 }
 
 /// The pieces of a corner, the same for both ways round it.
-pub(crate) fn pieces(edges: [&Edge; 2]) -> Pieces {
+pub fn pieces(edges: [&Edge; 2]) -> Pieces {
     let mut pieces = edges.map(|edge| (edge.road, edge.shape.start));
     pieces.sort_unstable();
     pieces

@@ -39,8 +39,7 @@ use crate::osm::StringId;
 
 pub use areas::{AreaKind, area_kind};
 pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
-pub(crate) use class::class_and_link;
-pub use class::{LEFT_OUT_REASONS, highway, way_facts};
+pub use class::{LEFT_OUT_REASONS, class_and_link, highway, way_facts};
 pub use country::{Countries, CountriesError, Place};
 pub use given::{GivenRoad, given_class};
 pub use legal::{At, Judgement, RuleSet};

@@ -111,7 +111,7 @@ impl Legal {
     }
 
     /// The plain limits as tags, their keys with an ending.
-    pub(crate) fn limit_tags(&self, ending: &str) -> Vec<(String, String)> {
+    pub fn limit_tags(&self, ending: &str) -> Vec<(String, String)> {
         let said = plain_limits(self).into_iter().filter_map(|(limit, _, key)| match limit {
             Limit::None => None,
             Limit::At(most) => Some((key, most.to_string())),

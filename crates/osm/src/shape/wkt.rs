@@ -4,7 +4,7 @@
 use super::{Shape, Xy, from_wkb};
 
 /// The shape of a text; `None` if it is empty.
-pub(crate) fn from_text(text: &str) -> Result<Option<Shape>, String> {
+pub fn from_text(text: &str) -> Result<Option<Shape>, String> {
     let text = text.trim();
     if text.starts_with("00") || text.starts_with("01") {
         return from_wkb(&bytes(text)?);

@@ -80,7 +80,7 @@ impl StrokeLine {
 
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
     /// given part.
-    pub(crate) fn half_widths(&self, strip: Policy, station: usize, opening: Opening) -> [f64; 2] {
+    pub fn half_widths(&self, strip: Policy, station: usize, opening: Opening) -> [f64; 2] {
         widened(&self.made.corridor, station, self.gradual(strip, station), opening)
     }
 

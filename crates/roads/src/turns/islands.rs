@@ -62,7 +62,7 @@ pub(super) fn cut_out(spans: &mut [AreaSpan], islands: &[Polygon]) {
 ///
 /// # Errors
 /// As for [`touching`].
-pub(crate) fn cut_out_of_route(network: &Network, frame: Frame, spans: &mut [AreaSpan]) -> Result<(), FrameError> {
+pub fn cut_out_of_route(network: &Network, frame: Frame, spans: &mut [AreaSpan]) -> Result<(), FrameError> {
     for span in spans {
         let all: MultiPolygon = span.area.rings.iter().map(|ring| polygon(ring)).collect();
         cut_out(std::slice::from_mut(span), &touching(network, frame, &all)?);

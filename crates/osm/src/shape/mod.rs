@@ -5,18 +5,20 @@
 mod wkb;
 mod wkt;
 
-pub(crate) use wkb::{from_geopackage, from_wkb};
-pub(crate) use wkt::from_text;
+pub use wkb::{from_geopackage, from_wkb};
+pub use wkt::from_text;
 
 use crate::osm::LonLat;
 
 /// x is longitude and y latitude, degrees, unless a reader has yet to transform them.
-pub(crate) type Xy = [f64; 2];
+pub type Xy = [f64; 2];
 
 /// A geometry.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Shape {
+pub enum Shape {
+    /// One position.
     Point(Xy),
+    /// Positions in order.
     Line(Vec<Xy>),
     /// The outer ring, then holes.
     Polygon(Vec<Vec<Xy>>),
@@ -24,7 +26,7 @@ pub(crate) enum Shape {
 
 impl Shape {
     /// The one part of a geometry that may have several.
-    pub(crate) fn only<T>(mut parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
+    pub fn only<T>(mut parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
         let last = parts.pop();
         match (last, parts.len()) {
             (last, 0) => Ok(last.map(make)),
@@ -33,7 +35,7 @@ impl Shape {
     }
 
     /// All its positions.
-    pub(crate) fn positions_mut(&mut self) -> Vec<&mut Xy> {
+    pub fn positions_mut(&mut self) -> Vec<&mut Xy> {
         match self {
             Self::Point(at) => vec![at],
             Self::Line(line) => line.iter_mut().collect(),
@@ -43,7 +45,7 @@ impl Shape {
 }
 
 /// A position, if it is one.
-pub(crate) fn position([lon, lat]: Xy) -> Result<LonLat, String> {
+pub fn position([lon, lat]: Xy) -> Result<LonLat, String> {
     if !lon.is_finite() || !lat.is_finite() {
         return Err("a coordinate is no finite number; correct it".to_owned());
     }
@@ -61,7 +63,7 @@ pub(crate) fn position([lon, lat]: Xy) -> Result<LonLat, String> {
 }
 
 /// Positions of a line, at least two different ones.
-pub(crate) fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
+pub fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
     let mut places: Vec<LonLat> = line.iter().map(|&at| position(at)).collect::<Result<_, _>>()?;
     places.dedup();
     if places.len() < 2 {
@@ -71,7 +73,7 @@ pub(crate) fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
 }
 
 /// Rings of a polygon, each closed and with at least three corners.
-pub(crate) fn rings(rings: &[Vec<Xy>]) -> Result<Vec<Vec<LonLat>>, String> {
+pub fn rings(rings: &[Vec<Xy>]) -> Result<Vec<Vec<LonLat>>, String> {
     let ring = |ring: &Vec<Xy>| -> Result<Vec<LonLat>, String> {
         let mut places: Vec<LonLat> = ring.iter().map(|&at| position(at)).collect::<Result<_, _>>()?;
         places.dedup();

@@ -7,7 +7,7 @@ use super::{Edge, Network};
 use crate::osm::LonLat;
 
 /// Mean radius of the earth (IUGG), metres. Lengths are accurate to 0.6 %.
-pub(crate) const EARTH_RADIUS_M: f64 = 6_371_008.8;
+pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// Geometry of every edge, for choosing continuations.
 pub(super) struct Geometry {
@@ -62,7 +62,7 @@ pub(super) fn deflection_deg(back: f64, ahead: f64) -> f64 {
 }
 
 /// Length of a line, metres, accurate to 0.6 %.
-pub(crate) fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
+pub fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
     let mut last = None;
     let mut sum = 0.0;
     for position in positions {
@@ -111,7 +111,7 @@ pub(super) fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f6
 }
 
 /// Metres east and north from `a` to `b`, by the short way across the date line.
-pub(crate) fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
+pub fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
     const TURN_E7: i64 = 3_600_000_000;
     let mut lon_e7 = i64::from(b.lon_e7) - i64::from(a.lon_e7);
     if lon_e7.abs() > TURN_E7 / 2 {

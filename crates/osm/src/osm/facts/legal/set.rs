@@ -107,9 +107,8 @@ impl RuleSet {
         Some(Self(Arc::new(Inner { text, groups: groups.into_iter().map(|group| group.1).collect() })))
     }
 
-    #[cfg(feature = "overture")]
     /// The rules of an object whose tags are the same in both directions of travel.
-    pub(crate) fn from_tags(tags: &[(String, String)]) -> Option<Self> {
+    pub fn from_tags(tags: &[(String, String)]) -> Option<Self> {
         let tags = tags.iter().map(|(key, value)| (key.as_str(), value.as_str()));
         Self::of(vec![Group::new(tags, Direction::Forward)])
     }

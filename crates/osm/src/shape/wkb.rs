@@ -94,14 +94,14 @@ impl Bytes<'_> {
 }
 
 /// The shape of well-known binary; `None` if it is empty.
-pub(crate) fn from_wkb(wkb: &[u8]) -> Result<Option<Shape>, String> {
+pub fn from_wkb(wkb: &[u8]) -> Result<Option<Shape>, String> {
     let mut bytes = Bytes { rest: wkb, little: true };
     let shape = bytes.shape()?;
     if bytes.rest.is_empty() { Ok(shape) } else { Err("bytes follow the geometry; write the file again".to_owned()) }
 }
 
 /// The reference system and the shape of a GeoPackage's blob.
-pub(crate) fn from_geopackage(blob: &[u8]) -> Result<(i32, Option<Shape>), String> {
+pub fn from_geopackage(blob: &[u8]) -> Result<(i32, Option<Shape>), String> {
     let mut bytes = Bytes { rest: blob, little: true };
     let [g, p, _, flags] = bytes.take()?;
     if [g, p] != *b"GP" || flags & 0x20 != 0 {

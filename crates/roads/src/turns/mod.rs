@@ -58,7 +58,7 @@ use std::ops::Range;
 pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
-pub(crate) use islands::cut_out_of_route;
+pub use islands::cut_out_of_route;
 pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes, junction_places};
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
@@ -108,7 +108,7 @@ impl Reach {
     }
 
     /// Length before the path that counts, metres: the vehicle's rear is still there when its front turns.
-    pub(crate) const fn counted_before_m(self) -> f64 {
+    pub const fn counted_before_m(self) -> f64 {
         match self {
             Self::Short => 20.0,
             Self::Long => 60.0,
@@ -133,7 +133,7 @@ impl Reach {
 
     /// Length after the path that counts, metres. At its end a vehicle is almost straight: articulation angles fall by
     /// a factor of e over a unit's length.
-    pub(crate) const fn counted_after_m(self) -> f64 {
+    pub const fn counted_after_m(self) -> f64 {
         match self {
             Self::Short => 45.0,
             Self::Long => 100.0,
@@ -142,19 +142,19 @@ impl Reach {
 
     /// What counts of the turn's strip at a distance before a path begins: all of it at the joint, nothing where the vehicle's rear is
     /// when its front begins to turn.
-    pub(crate) fn opening_before(self, before_m: f64) -> Opening {
+    pub fn opening_before(self, before_m: f64) -> Opening {
         Opening::new(1.0 - before_m / self.counted_before_m(), self.counted_before_m() - before_m)
     }
 
     /// The same at a distance after a path has ended: all of it for half the way that counts, nothing at its end.
-    pub(crate) fn opening_after(self, after_m: f64) -> Opening {
+    pub fn opening_after(self, after_m: f64) -> Opening {
         Opening::new(2.0 - 2.0 * after_m / self.counted_after_m(), self.counted_after_m() - after_m)
     }
 }
 
 /// What counts of a strip beyond the policy's own.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Opening {
+pub struct Opening {
     /// Share of what the strip has beyond.
     share: f64,
     /// At most this for half-widths, metres. A certificate deducts the change of a half-width along a body, so a lane that opened into
@@ -167,7 +167,7 @@ const OPENING: f64 = 0.05;
 
 impl Opening {
     /// Nothing counts.
-    pub(crate) const NONE: Self = Self { share: 0.0, most_m: 0.0 };
+    pub const NONE: Self = Self { share: 0.0, most_m: 0.0 };
     /// All of the strip counts.
     pub(super) const WHOLE: Self = Self { share: 1.0, most_m: f64::INFINITY };
 

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::osm::facts::RoadClass;
 use crate::osm::facts::rules_file::File;
 
-const BUILTIN: &str = include_str!("../../../data/roads.toml");
+const BUILTIN: &str = include_str!("../../../../../data/roads.toml");
 const BUILTIN_NAME: &str = "data/roads.toml (built in)";
 pub(super) const CLASSES: usize = RoadClass::ALL.len();
 

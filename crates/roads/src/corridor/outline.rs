@@ -19,7 +19,7 @@ const OVERLAP_M: f64 = 12.0;
 ///
 /// An edge bends between stations, and the ring does not. On the inside of a bend the ring would be wider than the strip, so it is
 /// drawn that much farther in. `None` for fewer than two stations.
-pub(crate) fn outline(
+pub fn outline(
     c: &Corridor,
     stations: Range<usize>,
     edges: &dyn Fn(usize) -> [f64; 2],
@@ -70,7 +70,7 @@ fn thinned(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Distance of a place from the line through two others, metres.
-pub(crate) fn from_chord_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+pub fn from_chord_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let d = [b[0] - a[0], b[1] - a[1]];
     let length = d[0].hypot(d[1]);
     if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }
@@ -79,7 +79,7 @@ pub(crate) fn from_chord_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Adds the straight road before a corridor and after it, where an area counts near its ends. The vehicle comes along the one and
 /// leaves along the other (proof, section 1), so bodies beyond the ends are not held against the cut end of an area. `open` says at
 /// which ends the area itself does not go on.
-pub(crate) fn open_ends(corridor: &mut Corridor, open: [bool; 2]) {
+pub fn open_ends(corridor: &mut Corridor, open: [bool; 2]) {
     let stations = |metres: f64| (metres / corridor.spacing_m).ceil() as usize;
     let (count, overlap) = (corridor.len(), stations(OVERLAP_M));
     let own = |k: usize| [corridor.left_m[k], -corridor.right_m[k]];

@@ -13,7 +13,8 @@ pub struct ChangeError {
 }
 
 impl ChangeError {
-    pub(crate) fn new(path: &Path, byte: Option<u64>, detail: impl Into<String>) -> Self {
+    /// An error at a byte of the inflated text of a file.
+    pub fn new(path: &Path, byte: Option<u64>, detail: impl Into<String>) -> Self {
         Self { path: path.to_owned(), byte, detail: detail.into() }
     }
 }

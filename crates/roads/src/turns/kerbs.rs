@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::network::{Edge, Network, Road};
 use crate::osm::facts::RoadClass;
 
-const TABLE: &str = include_str!("../../data/kerbs.toml");
+const TABLE: &str = include_str!("../../../../data/kerbs.toml");
 
 /// Assumed kerb radii.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,7 +96,7 @@ impl Kerbs {
     ///
     /// # Errors
     /// A message that names the country with an impossible radius.
-    pub(crate) fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), String> {
         let wrong = |c: &&Country| c.radii().iter().any(|radius_m| !(0.0..=100.0).contains(radius_m));
         match self.countries.iter().find(wrong) {
             Some(country) => Err(format!("a radius of {:?} is not between 0 and 100 m", country.codes)),

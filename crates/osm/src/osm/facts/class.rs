@@ -218,7 +218,7 @@ pub fn highway(class: RoadClass, link: bool) -> String {
 }
 
 /// The reverse of [`highway`].
-pub(crate) fn class_and_link(highway: &str) -> Option<(RoadClass, bool)> {
+pub fn class_and_link(highway: &str) -> Option<(RoadClass, bool)> {
     let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
     Some((RoadClass::named(class)?, link))
 }
