@@ -7,6 +7,8 @@
 mod accounts;
 #[path = "support/extracts.rs"]
 mod extracts;
+#[path = "support/skip.rs"]
+mod skip;
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},

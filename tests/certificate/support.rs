@@ -10,3 +10,5 @@ pub(crate) mod extracts;
 #[path = "../support/routing.rs"]
 #[allow(dead_code)]
 pub(crate) mod routing;
+#[path = "../support/skip.rs"]
+pub(crate) mod skip;

@@ -9,6 +9,7 @@ use netcert::osm::pbf::read_extract;
 use netcert::osm::{Backdrop, BackdropShape, LonLat};
 
 use crate::support::extracts;
+use crate::support::skip::skipped;
 
 fn area_deg2(ring: &[LonLat]) -> f64 {
     let origin = ring[0].degrees();
@@ -87,7 +88,7 @@ fn rounded(lon: f64, lat: f64) -> LonLat {
 fn areas_of_real_extracts_are_those_of_osmium() {
     for name in ["andorra", "victoria_au", "columbus_oh_us", "sydney_au"] {
         let Some(path) = extracts::extract(&format!("{name}.osm.pbf")) else { continue };
-        let Some((theirs, count)) = by_osmium(&path) else { return println!("skipped: no osmium") };
+        let Some((theirs, count)) = by_osmium(&path) else { return skipped("osmium", "Debian: osmium-tool") };
         let extract = read_extract(&path, &|_| ()).unwrap();
         let ours = areas(&extract.backdrop);
         println!("{name}: {ours:?}, {:?}; osmium {theirs:?}, {count} areas", extract.account.backdrop);

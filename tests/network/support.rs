@@ -16,3 +16,5 @@ pub(crate) mod junctions;
 pub(crate) mod roundabout;
 #[path = "../support/routing.rs"]
 pub(crate) mod routing;
+#[path = "../support/skip.rs"]
+pub(crate) mod skip;

@@ -7,6 +7,7 @@
 
 use crate::support::demo::demo;
 use crate::support::program;
+use crate::support::skip::skipped;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,7 +25,7 @@ pub(crate) fn python() -> Option<&'static Path> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let made = Command::new(root.join("tests/engines/venv.sh")).output().ok()?;
         if !made.status.success() {
-            println!("skipped: {}", String::from_utf8_lossy(&made.stderr).trim());
+            skipped("engines of PyPI", String::from_utf8_lossy(&made.stderr).trim());
             return None;
         }
         Some(root.join(String::from_utf8(made.stdout).ok()?.trim()))
@@ -212,7 +213,7 @@ pub(crate) fn pgrouting() -> bool {
     let mut versions = std::fs::read_dir("/usr/share/postgresql").into_iter().flatten().flatten();
     let there = versions.any(|version| version.path().join("extension/pgrouting.control").exists());
     if !there {
-        println!("skipped: no PostgreSQL with pgRouting (Debian: postgresql-15-pgrouting)");
+        skipped("pgRouting", "Debian: postgresql and its package pgrouting");
     }
     there
 }

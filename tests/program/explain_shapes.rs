@@ -10,6 +10,7 @@ use netcert::corridor::Frame;
 use serde_json::Value;
 
 use crate::support::program::{Answer, Place};
+use crate::support::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
 
@@ -213,7 +214,7 @@ fn an_edge_s_strip_holds_its_path_and_has_its_length() {
 #[test]
 fn gdal_reads_every_shape_with_its_properties() {
     if Command::new("ogrinfo").arg("--version").output().is_err() {
-        return eprintln!("skipped: no ogrinfo (Debian: gdal-bin)");
+        return skipped("ogrinfo", "Debian: gdal-bin");
     }
     let place = Place::with_wide_demo(VEHICLE);
     let (id, _) = some_of_each(&place, "turn").into_iter().find(|turn| turn.1.starts_with("safe")).unwrap();

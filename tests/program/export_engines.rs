@@ -2,6 +2,7 @@
 
 use crate::support::demo::demo;
 use crate::support::program;
+use crate::support::skip::skipped;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -177,8 +178,7 @@ fn the_request_for_valhalla_lets_no_place_be_moved_to_another_road() {
 #[test]
 fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
     if Command::new("osmium").arg("--version").output().is_err() {
-        println!("skipped: no osmium (Debian: osmium-tool)");
-        return;
+        return skipped("osmium", "Debian: osmium-tool");
     }
     let place = Place::with_demo();
     place.netcert("export osm-pbf --vehicle AU-SEMI19 --extract {demo} --out out.osm.pbf").succeeds();

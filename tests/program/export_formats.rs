@@ -3,6 +3,7 @@
 use crate::engines;
 use crate::support::program;
 use crate::support::python;
+use crate::support::skip::skipped;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
@@ -126,7 +127,7 @@ fn the_same_input_gives_the_same_bytes_in_every_format() {
 fn gdal() -> bool {
     let there = Command::new("ogr2ogr").arg("--version").output().is_ok();
     if !there {
-        eprintln!("skipped: no GDAL (Debian: gdal-bin)");
+        skipped("ogr2ogr", "Debian: gdal-bin");
     }
     there
 }
@@ -381,7 +382,7 @@ fn an_answer_of_openrouteservice_becomes_rows() {
     command.args(["-r", "--arg", "profile", "driving-hgv", "-f"]);
     command.arg(place.path("ors/feature_map.jq")).arg(place.path("answer.json"));
     if command.output().is_err() {
-        return eprintln!("skipped: no jq");
+        return skipped("jq", "Debian: jq");
     }
     let rows = Answer::of("jq", &mut command).succeeds().out();
     let rows: Vec<Vec<&str>> = rows.lines().map(|row| row.split(',').collect()).collect();

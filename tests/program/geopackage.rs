@@ -17,6 +17,7 @@ use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 use netcert::words::{VerdictKind, verdict_words};
 
+use crate::support::skip::skipped;
 use crate::support::store_network;
 use store_network::{certificate, network};
 
@@ -603,8 +604,7 @@ fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
     let folder = folder();
     let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=3m", "tmpfs"]).arg(folder.path()).output();
     if !mount.is_ok_and(|out| out.status.success()) {
-        eprintln!("skipped: may not mount a small file system here");
-        return;
+        return skipped("small file system", "needs the right to mount");
     }
     let path = folder.path().join("a.gpkg");
     let result = std::panic::catch_unwind(|| {
@@ -692,8 +692,7 @@ fn gdal_shows_the_layers() {
         String::from_utf8(out.stdout).unwrap()
     };
     if Command::new("ogrinfo").arg("--version").output().is_err() {
-        eprintln!("skipped: ogrinfo is not installed");
-        return;
+        return skipped("ogrinfo", "Debian: gdal-bin");
     }
     let count = |text: &str| -> usize {
         let line = text.lines().find(|line| line.starts_with("Feature Count")).unwrap();

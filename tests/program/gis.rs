@@ -6,6 +6,7 @@ use std::process::Command;
 
 use crate::support::program::{Answer, Place};
 use crate::support::python::python;
+use crate::support::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
 
@@ -46,7 +47,7 @@ fn gdal_s_validator_finds_nothing() {
 #[test]
 fn gdal_lists_what_users_read_without_a_warning() {
     if Command::new("ogrinfo").arg("--version").output().is_err() {
-        return eprintln!("skipped: no ogrinfo (Debian: gdal-bin)");
+        return skipped("ogrinfo", "Debian: gdal-bin");
     }
     let place = Place::with_demo();
     let ogrinfo = |arguments: &[&str]| {
@@ -148,7 +149,7 @@ fn styles_have_the_page_s_colours() {
 #[test]
 fn qgis_opens_every_layer_in_its_style() {
     let Some(mut python) = debian("qgis.core") else {
-        return eprintln!("skipped: no QGIS (Debian: python3-qgis)");
+        return skipped("qgis", "Debian: python3-qgis");
     };
     let place = Place::with_demo();
     python.arg(script("run_qgis.py")).arg(place.path("demo.gpkg")).arg(place.path("roads.png"));

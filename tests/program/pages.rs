@@ -8,6 +8,7 @@
 use crate::engines;
 use crate::support::program;
 use crate::support::python;
+use crate::support::skip::skipped;
 
 use std::collections::BTreeMap;
 use std::net::TcpListener;
@@ -157,7 +158,7 @@ fn script(page: &Page) -> (String, Option<String>) {
         }
         let folders: Vec<Option<PathBuf>> = block.needs.iter().map(|need| folder_of(need)).collect();
         if let Some(missing) = folders.iter().position(Option::is_none) {
-            return (lines.join("\n"), Some(format!("no {}", block.needs[missing])));
+            return (lines.join("\n"), Some(block.needs[missing].clone()));
         }
         let folders: Vec<String> = folders.iter().flatten().map(|path| path.to_string_lossy().into_owned()).collect();
         lines[block.first - 1] = format!("PATH='{}':$NETCERT_PATH", folders.join(":"));
@@ -175,7 +176,7 @@ fn script(page: &Page) -> (String, Option<String>) {
 fn run(page: &Page, place: &Place) -> String {
     let (script, missing) = script(page);
     if let Some(missing) = &missing {
-        println!("skipped: {}.md has more commands: {missing}", page.name);
+        skipped(missing, &format!("commands of {}.md", page.name));
     }
     let file = format!("{}.sh", page.name);
     std::fs::write(place.path(&file), script).unwrap();

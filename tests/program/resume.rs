@@ -4,6 +4,7 @@ use std::process::Stdio;
 use std::time::Duration;
 
 use crate::support::program::{Answer, Place};
+use crate::support::skip::skipped;
 
 const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
 const KILLS: u32 = 100;
@@ -95,8 +96,7 @@ fn finished_work_outlives_a_full_disk() {
     std::fs::create_dir(&small).unwrap();
     let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=200k", "tmpfs"]).arg(&small).output();
     if !mount.is_ok_and(|out| out.status.success()) {
-        eprintln!("skipped: may not mount a small file system here");
-        return;
+        return skipped("small file system", "needs the right to mount");
     }
     let line = format!("{LINE} --db small/demo.gpkg");
     let full = std::panic::catch_unwind(|| {

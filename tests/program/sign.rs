@@ -9,6 +9,7 @@ use netcert::sign::{PublicKey, Refusal, check_document};
 use serde_json::{Value, json};
 
 use crate::support::program;
+use crate::support::skip::skipped;
 
 use program::Place;
 
@@ -20,7 +21,7 @@ const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.2
 fn openssl(place: &Place, line: &str) -> Option<std::process::Output> {
     let mut command = Command::new("openssl");
     command.current_dir(place.path("")).args(line.split_whitespace());
-    let output = command.output().inspect_err(|e| eprintln!("skipped: openssl: {e}")).ok()?;
+    let output = command.output().inspect_err(|e| skipped("openssl", &e.to_string())).ok()?;
     Some(output)
 }
 
@@ -360,8 +361,7 @@ fn the_commands_of_the_page_work() {
     let page = include_str!("../../docs/how-to/sign.md");
     for program in ["openssl", "sqlite3", "basenc", "python3"] {
         if Command::new(program).arg("--version").output().is_err() {
-            eprintln!("skipped: {program} is missing");
-            return;
+            return skipped(program, "a command of the page");
         }
     }
     let place = Place::empty();

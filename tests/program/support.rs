@@ -12,6 +12,8 @@ pub(crate) mod program;
 pub(crate) mod python;
 #[path = "../support/sheet.rs"]
 pub(crate) mod sheet;
+#[path = "../support/skip.rs"]
+pub(crate) mod skip;
 #[path = "../support/store_network.rs"]
 pub(crate) mod store_network;
 #[path = "../support/xml.rs"]

@@ -9,6 +9,7 @@ use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
 use crate::support::extracts;
 use crate::support::program::{Answer, Place};
+use crate::support::skip::skipped;
 
 /// Vehicle and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";
@@ -151,8 +152,7 @@ fn the_result_is_that_of_ingesting_what_osmium_makes() {
     );
     let place = place.file("2.osc", back);
     let Some(()) = osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "-o", "one.osm.pbf"]) else {
-        println!("skipped: no osmium");
-        return;
+        return skipped("osmium", "Debian: osmium-tool");
     };
     osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "2.osc", "-o", "two.osm.pbf"]).unwrap();
     for name in ["one", "two"] {
@@ -229,7 +229,7 @@ fn sydney_before_and_after(changes: impl Fn(&str) -> String) -> Option<Place> {
     let place = Place::empty().file("none.osc", format!("{HEAD}</osmChange>"));
     // osmium does not keep the box of the header, by which edges near the border are marked.
     if osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]).is_none() {
-        println!("skipped: no osmium");
+        skipped("osmium", "Debian: osmium-tool");
         return None;
     }
     osmium(&place, &["cat", "old.osm.pbf", "-o", "old.opl"]).unwrap();
@@ -385,8 +385,7 @@ fn changes_that_are_older_than_the_extract_are_refused() {
     let place = place();
     let header = "--output-header=osmosis_replication_timestamp=2026-11-20T00:00:00Z";
     let Some(()) = osmium(&place, &["cat", "grid.osm.pbf", header, "-o", "dated.osm.pbf"]) else {
-        println!("skipped: no osmium");
-        return;
+        return skipped("osmium", "Debian: osmium-tool");
     };
     run(&place, &format!("ingest dated.osm.pbf {MADE}")).succeeds();
     let at = |time: &str| changes().replace("version=\"2\"", &format!("version=\"2\" timestamp=\"{time}\""));
@@ -423,8 +422,7 @@ fn vehicles_and_their_settings_stay() {
 fn measurements_stay_and_count_on_what_is_taken_over_and_on_what_is_new() {
     let place = place();
     let Some(()) = osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "-o", "new.osm.pbf"]) else {
-        println!("skipped: no osmium");
-        return;
+        return skipped("osmium", "Debian: osmium-tool");
     };
     // One on a road that stays, one on the road that gets narrow.
     let mut rows = "quantity,value,sigma,source,way_id\n".to_owned();

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::skip::skipped;
+
 /// Path of an extract, if it exists.
 pub(crate) fn extract(name: &str) -> Option<PathBuf> {
     folder_with(name).map(|folder| folder.join(name))
@@ -15,6 +17,6 @@ pub(crate) fn folder_with(name: &str) -> Option<PathBuf> {
     if folder.join(name).exists() {
         return Some(folder);
     }
-    eprintln!("skipped: no {name} at {} (set NETCERT_EXTRACTS)", folder.display());
+    skipped(name, &format!("not at {}; set NETCERT_EXTRACTS", folder.display()));
     None
 }

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
+use super::skip::skipped;
+
 /// The interpreter of the environment that reads and writes tables.
 pub(crate) fn tables() -> Option<PathBuf> {
     python("tables", &["duckdb", "pyarrow"])
@@ -23,7 +25,7 @@ pub(crate) fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
         runs(Path::new(python), &["-c", "import sys, venv, ensurepip; assert sys.version_info >= (3, 10)"])
     });
     let Some(recent) = recent else {
-        eprintln!("skipped: no Python of at least 3.10 with venv");
+        skipped("python", "at least 3.10, with venv");
         return None;
     };
     let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
@@ -32,7 +34,7 @@ pub(crate) fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
         && runs(&python, &[&install[..], packages].concat())
         && std::fs::write(&made, wanted).is_ok();
     if !done {
-        eprintln!("skipped: pip cannot install {}", packages.join(" "));
+        skipped("packages of PyPI", &packages.join(" "));
     }
     done.then_some(python)
 }
