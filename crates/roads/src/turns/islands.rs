@@ -61,7 +61,7 @@ pub(super) fn cut_out(spans: &mut [AreaSpan], islands: &[Polygon]) {
 /// The same for a whole route.
 ///
 /// # Errors
-/// As for [`touching`].
+/// The frame cannot transform a position.
 pub fn cut_out_of_route(network: &Network, frame: Frame, spans: &mut [AreaSpan]) -> Result<(), FrameError> {
     for span in spans {
         let all: MultiPolygon = span.area.rings.iter().map(|ring| polygon(ring)).collect();
