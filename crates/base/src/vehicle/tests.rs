@@ -393,3 +393,82 @@ proptest! {
         }
     }
 }
+
+/// What the page says before its tables: names that people use, and ids of the catalogue.
+const HEAD: &str = "\
+# Vehicles of the catalogue
+
+`crates/base/src/vehicle/tests.rs` writes this page from [data/vehicles.toml](../data/vehicles.toml) (`NETCERT_WRITE_DOCS=1 cargo test -p netcert-base page_of_vehicles`).
+A dimension of the catalogue is one of its kind, not that of your lorry: `netcert vehicles show ID > ours.toml` begins a file of your own.
+
+| people say | where | see |
+| --- | --- | --- |
+| Sattelzug, articulated lorry, semi-remorque | Europe | EU-SEMI16.5 |
+| Gliederzug, drawbar combination | Europe | EU-DRAWBAR18.75, EU-CAT18.75 |
+| Lang-Lkw | Germany | EU-EMS25-D, EU-EMS25-B, EU-EMS25-C |
+| LZV (langere en zwaardere vrachtautocombinatie) | Netherlands, Belgium | the same |
+| modulvogntog, modulvogntåg, 25,25 m | Denmark, Norway, Sweden | the same |
+| EMS 2, Duo2, HCT | Sweden, Finland, Denmark, Spain | EU-EMS2-A31.5, EU-EMS2-AB34.5 |
+| semi, 18-wheeler | United States | US-WB62, US-WB67 |
+| STAA double, twin 28s | United States | US-WB67D |
+| longer combination vehicle (LCV): Rocky Mountain double, turnpike double, triple | United States, Canada | US-WB92D, US-WB109D, US-WB100T, CA-RMD31, CA-TPD41, CA-TRIPLE35 |
+| B-train | Canada | CA-BTRAIN25 |
+| B-double | Australia | AU-BDOUBLE26 |
+| A-double | Australia | AU-ADOUBLE30, AU-ADOUBLE36 |
+| road train, type 1 and type 2 | Australia | AU-ADOUBLE36, AU-BTRIPLE36, AU-ABTRIPLE44, AU-ATRIPLE53, AU-BABQUAD53, AU-ABBQUAD53 |
+| bendy bus, Gelenkbus; double-articulated bus | everywhere | BUS-ART18-EU, BUS-ART18-AASHTO, BUS-BIART24 |
+| tugger train | factories, airports | AGV-TUG4 |
+";
+
+fn page_of_vehicles(catalogue: &Catalogue) -> String {
+    let mut page = HEAD.to_owned();
+    let mut regions: Vec<&str> = Vec::new();
+    for vehicle in catalogue.iter() {
+        if !regions.contains(&vehicle.region.as_str()) {
+            regions.push(&vehicle.region);
+        }
+    }
+    let known = |value: Option<f64>| value.map_or("–".to_owned(), |value| value.to_string());
+    for region in regions {
+        page += &format!("\n## {region}\n\n");
+        page += "| id | name | units | length, m | width, m | height, m | mass, t | axle, t | class |\n";
+        page += "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+        for v in catalogue.region(region) {
+            let class = v.class().map_or("–", |class| class.name.as_str());
+            let (height, mass, axle) = (known(v.height_m), known(v.gross_mass_t), known(v.axle_load_t));
+            page += &format!(
+                "| `{}` | {} | {} | {} | {} | {height} | {mass} | {axle} | {class} |\n",
+                v.id,
+                v.name,
+                v.units.len(),
+                v.length_m,
+                v.width_m()
+            );
+        }
+        page += "\nWhat is published and where, and what is assumed:\n\n";
+        for v in catalogue.region(region) {
+            page += &format!("- `{}`: {}\n", v.id, v.source.split_whitespace().collect::<Vec<_>>().join(" "));
+        }
+    }
+    page
+}
+
+#[test]
+fn the_page_of_vehicles_is_true() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let page = page_of_vehicles(&catalogue);
+    for id in HEAD
+        .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-' || c == '.'))
+        .filter(|word| ["EU-", "US-", "CA-", "AU-", "BUS-", "AGV-"].iter().any(|region| word.starts_with(region)))
+    {
+        assert!(catalogue.get(id).is_ok(), "the page names {id}");
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/vehicles.md");
+    if std::env::var_os("NETCERT_WRITE_DOCS").is_some() {
+        std::fs::write(path, &page).unwrap();
+    }
+    assert!(
+        std::fs::read_to_string(path).unwrap_or_default() == page,
+        "docs/vehicles.md differs; NETCERT_WRITE_DOCS=1 writes it"
+    );
+}
