@@ -45,7 +45,7 @@ Every claim is computed again: geometry, motion along the plan, straight gains, 
 hinges, RSC and hashes. A claim is confirmed if the computed bound is at most 1 mm below the claimed
 one. Otherwise it is not confirmed, and the output says by how much and where. A claim that cannot
 be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed. A remark
-is about what no claim rests on: the named limiting place has more room than the RSC.
+is about what no claim rests on, such as a limiting place with more room than the RSC.
 
 With --key the signature is checked first. What is not signed, is signed with another key, or was
 changed after it was signed, is refused with status 1. Without --key a signature is checked only with
@@ -110,10 +110,9 @@ impl Verify {
         found.sets.iter().for_each(|checked| count(&mut table, checked));
         table.write(&mut out, "")?;
         let complaints: Vec<Complaint> = found.complaints().collect();
-        for Complaint { grade, detail } in
-            complaints.iter().take(MOST_LISTED).chain(found.remarks().take(MOST_LISTED).collect::<Vec<_>>().iter())
-        {
-            writeln!(out, "{:<13}  {}", grade.word(), printable(detail))?;
+        let listed = complaints.iter().take(MOST_LISTED).cloned();
+        for Complaint { grade, detail } in listed.chain(found.remarks().take(MOST_LISTED)) {
+            writeln!(out, "{:<13}  {}", grade.word(), printable(&detail))?;
         }
         out.flush()?;
         session.progress.say(NOT_CHECKED);
