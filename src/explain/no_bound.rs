@@ -6,7 +6,7 @@
 use super::hints::ShorterHint;
 use super::names::{hinge_name, named};
 use super::{Explanation, Geometry};
-use crate::stet::Model;
+use crate::stet::{Model, fading_m};
 use crate::stop::{Stop, Stopped};
 use crate::vehicle::{Catalogue, Vehicle};
 
@@ -52,9 +52,8 @@ fn evenly<'v>(all: &[&'v Vehicle]) -> Vec<&'v Vehicle> {
 
 /// The first line, if no bound holds.
 pub(super) fn headline(e: &Explanation, g: &Geometry) -> String {
-    if let Some(station) = g.corridor.torn().into_iter().find(|k| g.span.contains(k)) {
-        let at = g.along_m(station as f64);
-        return format!("the line drawn for the road is no curve at {at:.0} m: nothing is certified there");
+    if let Some(torn) = torn(e, g) {
+        return torn;
     }
     let sharpest = g.corridor.curvature[g.span.clone()].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
     let what = if e.turn.is_some() { "the best path found" } else { "the road" };
@@ -66,9 +65,32 @@ pub(super) fn headline(e: &Explanation, g: &Geometry) -> String {
     )
 }
 
+/// Where the line drawn for the road is no curve, on the span, or so shortly before it that the units have not settled since.
+fn torn(e: &Explanation, g: &Geometry) -> Option<String> {
+    let stations = |metres: f64| (metres / g.corridor.spacing_m).ceil() as usize;
+    let settling_m = fading_m(&e.vehicle.units);
+    let length = stations(e.vehicle.length_m);
+    let mattering = g.span.start.saturating_sub(stations(settling_m) + length)..g.span.end + length;
+    let torn: Vec<usize> = g.corridor.torn().into_iter().filter(|k| mattering.contains(k)).collect();
+    let on_the_span = torn.iter().find(|k| g.span.contains(k)).or(torn.last())?;
+    Some(if g.span.contains(on_the_span) {
+        let at_m = g.along_m(*on_the_span as f64);
+        format!("the line drawn for the road is no curve at {at_m:.0} m: nothing is certified there")
+    } else if *on_the_span < g.span.start {
+        let before_m = (g.span.start - on_the_span) as f64 * g.corridor.spacing_m;
+        format!(
+            "the line drawn for the road is no curve {before_m:.0} m before: how the units stand after that place is not known, and {} \
+             needs {settling_m:.0} m to settle",
+            e.vehicle.id
+        )
+    } else {
+        "the line drawn for the road is no curve just behind, where the vehicle is before its rear has left".to_owned()
+    })
+}
+
 /// What happens there: how far the hinge turns without any error.
 pub(super) fn reason(e: &Explanation, g: &Geometry) -> Option<String> {
-    if g.corridor.torn().iter().any(|k| g.span.contains(k)) {
+    if torn(e, g).is_some() {
         return None;
     }
     let unit = g.hinge.unit;

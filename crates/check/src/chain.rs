@@ -4,6 +4,11 @@ use crate::gains::Gains;
 use crate::link::{DEFECT_RAD, Link};
 use netcert_base::vehicle::Vehicle;
 
+/// What may be left of an earlier offset, metres.
+const LEFT_M: f64 = 1e-4;
+/// Least cos δ for which offsets fade as fast as is assumed.
+const LEAST_COSINE: f64 = 0.8;
+
 /// A vehicle with its straight gains.
 #[derive(Debug, Clone)]
 pub struct Chain {
@@ -13,6 +18,8 @@ pub struct Chain {
     /// m, radians.
     pub(crate) heading_rad: f64,
     pub(crate) gains: Gains,
+    /// The way of the steer axle after which it no longer matters how the units stood before, metres (proof, section 8).
+    pub(crate) fading_m: f64,
 }
 
 impl Chain {
@@ -31,7 +38,14 @@ impl Chain {
         };
         let links: Vec<Link> = vehicle.units.iter().map(link).collect();
         let gains = Gains::of(&links);
-        Self { links, tolerance_m: vehicle.tracking_tolerance_m, heading_rad: vehicle.tracking_heading_rad, gains }
+        let fading_m = faded(&links, LEFT_M);
+        Self {
+            links,
+            tolerance_m: vehicle.tracking_tolerance_m,
+            heading_rad: vehicle.tracking_heading_rad,
+            gains,
+            fading_m,
+        }
     }
 
     /// With the vehicle straight, metres: from the steer axle to the foremost point, and to the rearmost point.
@@ -45,4 +59,24 @@ impl Chain {
         }
         (ahead, -behind)
     }
+}
+
+/// The way after which offsets of all body points are below `left_m`, whatever the units' angles were. Any rate r below 1/L of every unit will do: if
+/// E·exp(−rs) bounds a coupling's offset and Y the axle's first one, max(Y, E/(1 − rL))·exp(−rs) bounds the axle's.
+fn faded(links: &[Link], left_m: f64) -> f64 {
+    let longest = links.iter().map(|link| link.l).fold(0.0, f64::max);
+    let mut best = f64::INFINITY;
+    for share in 1..100 {
+        let rate = f64::from(share) / (100.0 * longest);
+        let (mut e, mut farthest) = (0.0, 0.0_f64);
+        for Link { l, k, front, rear, .. } in links {
+            let y = f64::max(2.0 * l + e, e / (1.0 - rate * l));
+            // The place a ahead of the axle is off by (1 − a/L)y + (a/L)e.
+            let off = |a: f64| (1.0 - a / l).abs() * y + (a / l).abs() * e;
+            farthest = farthest.max(y).max(off(*front)).max(off(*rear));
+            e = (1.0 + k).abs() * y + k.abs() * e;
+        }
+        best = best.min((farthest / left_m).ln() / (rate * LEAST_COSINE));
+    }
+    best
 }

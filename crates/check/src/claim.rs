@@ -186,6 +186,13 @@ impl<'a> Subject<'a> {
             self.leeway(swept, claims, &own, &mut findings);
             self.room(swept, claims, &own, &mut findings);
             for i in own {
+                if let Some(station) = self.torn_before(swept, &claims[i]) {
+                    let detail = format!(
+                        "{:.1} m: no corridor fits the station, and how the units stood there still matters on the span",
+                        (station as f64 - self.road.lead as f64) * self.road.spacing
+                    );
+                    findings[i].push(Finding { weight: Weight::Unbounded, ..finding("rsc_m", &detail) });
+                }
                 let margin = claims[i].hinge_margin_rad;
                 if let Some(short) = margin.and_then(|margin| self.hinges(swept, &claims[i].stations, margin)) {
                     findings[i].push(Finding { weight: short.1, ..finding("hinge_margin_deg", &short.0) });
@@ -193,6 +200,15 @@ impl<'a> Subject<'a> {
             }
         }
         findings
+    }
+
+    /// The last station that does not fit its neighbours and that the steer axle passed so shortly before a claimed span that the units have
+    /// not settled since.
+    fn torn_before(&self, swept: &Swept<'_>, claim: &SpanClaim) -> Option<usize> {
+        claim.rsc_m?;
+        let first = swept.steps(self.stretches(&claim.stations)).start / STEPS;
+        let fading = (self.chain.fading_m / self.road.spacing) as usize;
+        self.road.torn(first.saturating_sub(fading)..first)
     }
 
     /// Checks two columns of leeway (left, right), with one entry per station at γ = 1. Each entry claims what a span

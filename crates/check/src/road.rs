@@ -168,6 +168,12 @@ impl Road {
         self.slack[self.split(s).0]
     }
 
+    /// The last of some stations (extensions included) that does not fit its neighbours.
+    pub(crate) fn torn(&self, stations: std::ops::Range<usize>) -> Option<usize> {
+        let end = stations.end.min(self.slack.len());
+        (stations.start..end).rev().find(|&k| self.slack[k].is_infinite())
+    }
+
     /// Largest heading difference where the stretch at `s` meets its neighbours, radians.
     pub(crate) fn jump(&self, s: f64) -> f64 {
         let k = self.split(s).0;

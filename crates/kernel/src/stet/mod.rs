@@ -10,6 +10,7 @@ mod body;
 mod course;
 mod drive;
 mod external_plan;
+mod fading;
 mod gains;
 mod group;
 mod lanes;
@@ -40,6 +41,7 @@ use netcert_base::verdict::{UnsafeReason, Verdict};
 
 pub use course::Course;
 pub use external_plan::{PlanError, certify_plan};
+pub use fading::fading_m;
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
 pub use plane::Grounds;

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::fading::fading_m;
 use super::gains::{Chain, Gain};
 use crate::published;
 use netcert_base::vehicle::{Unit, Vehicle};
@@ -71,6 +72,8 @@ pub struct Model {
     /// With the vehicle straight, metres: from the steer axle to the front, and to the rear.
     pub(super) front: f64,
     pub(super) length: f64,
+    /// The way after which it no longer matters how the units stood before, metres.
+    pub(super) fading: f64,
 }
 
 impl Model {
@@ -125,6 +128,7 @@ impl Model {
             published_radius: published::last_radius_m(units),
             front,
             length: -rear,
+            fading: fading_m(units),
         })
     }
 }

@@ -44,7 +44,7 @@ pub fn sweep_path(path: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Vec<Pose>> {
 }
 
 /// Turns the units' headings (front to rear, unit vectors) as the steer axle moves by `step`, metres.
-fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
+pub(super) fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
     for (heading, unit) in headings.iter_mut().zip(units) {
         let turned = turn(*heading, step, unit.coupling_to_axle_m);
         let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
@@ -69,7 +69,8 @@ fn turn(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
     [along[0] * cos + along[1] * sin, along[1] * cos - along[0] * sin]
 }
 
-fn chain(steer: [f64; 2], headings: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Pose> {
+/// The poses of all units, front to rear, from the place of the steer axle.
+pub(super) fn chain(steer: [f64; 2], headings: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Pose> {
     let mut coupling = steer;
     headings
         .iter()

@@ -19,10 +19,6 @@ const BESIDE_M: f64 = 0.6;
 /// A vehicle longer than this counts by its length.
 const LONG_M: f64 = 56.0;
 
-/// Vehicle lengths after which an earlier disturbance has faded to a few hundredths. No unit is longer than half a
-/// vehicle.
-const FADING_LENGTHS: usize = 2;
-
 /// RSC where the bounds do not close. Any leeway below half of it means the same.
 pub(super) const NOTHING_M: f64 = -1000.0;
 
@@ -217,10 +213,10 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
     if hinge < 0.5 * NOT_CLOSED_RAD {
         least = NOTHING_M;
     }
-    // Trailers that passed torn stations are not at their nominal places for a while.
-    let behind = (model.length / track.spacing).ceil() as usize;
-    let start = *own(track, span).start();
-    if track.torn.iter().any(|k| (start.saturating_sub(FADING_LENGTHS * behind)..start).contains(k)) {
+    // After a torn station nothing is known of the units until it no longer matters how they stood there.
+    let heads = straight(track, model, span);
+    let fading = (model.fading / track.spacing).ceil() as usize;
+    if track.torn.iter().any(|k| (heads.start.saturating_sub(fading)..heads.end).contains(k)) {
         (least, hinge) = (NOTHING_M, hinge.min(NOT_CLOSED_RAD));
     }
     // If no point passed, nothing is known.
