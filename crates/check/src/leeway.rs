@@ -272,8 +272,9 @@ impl<'a> Swept<'a> {
             self.cell(cell, hints, targets, found);
             return;
         }
-        // A cell over several stretches may be tested for another stretch's claim.
-        let spread = last > first;
+        // A cell over several stretches may be tested for another stretch's claim. Nothing is claimed beyond the corridor's ends.
+        let ends = [self.road.lead as f64, (self.road.lead + self.road.count - 1) as f64];
+        let spread = last > first || all.iter().any(|corner| corner.s < ends[0] || corner.s > ends[1]);
         if cell.halvings < MOST_HALVINGS && (halving_helps || spread || dull || cell.halvings < 4) {
             let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
             let [[a0, a1], [t0, t1]] = [cell.a, cell.t];

@@ -7,6 +7,7 @@ use crate::chain::Chain;
 use crate::claim::{SpanClaim, Subject, Weight};
 use crate::drawn::{chain, random, unit};
 use netcert_base::corridor::CurvatureProfile;
+use netcert_base::vehicle::Unit;
 
 /// A tractor with a semi-trailer, 16 m long.
 fn semi() -> Chain {
@@ -480,4 +481,30 @@ fn distances_of_hulls_are_exact() {
     let line = hull(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]);
     assert!((clearance(&line, [[1.0, 1.0], [9.0, 1.0]]) - 1.0).abs() < 1e-12);
     assert!((clearance(&hull(&[[0.0; 2]; 3]), [[3.0, 4.0], [3.0, 9.0]]) - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_beyond_the_corridor_when_an_area_ends_is_not_counted() {
+    let still = |unit: Unit| Unit { sway_rad: 0.0, ..unit };
+    let chain = chain(0.0, vec![still(unit(3.7, -0.6, 1.4, 0.9, 60.0))]);
+    let spacing = 0.25;
+    let profile = CurvatureProfile::new(spacing).straight(40.0).clothoid(-0.1, 4.0).arc(-0.1, 12.0);
+    let mut corridor = Corridor::from_curvature(spacing, START, HEADING, &profile.curvature, 3.0, 7.0);
+    let last = corridor.len() - 1;
+    corridor.areas = vec![AreaSpan { heads: 100..last, area: area(START, HEADING, &[square([30.0, 0.0], 90.0)]) }];
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let (motion, end) = (subject.motion.as_ref().unwrap(), (subject.road.lead + last) as f64);
+    let mut least = [f64::INFINITY; 2];
+    for node in (subject.road.lead + last - 1) * STEPS..motion.steps() {
+        for a in (-90..=510).map(|cm| 0.01 * f64::from(cm)) {
+            let place = point(motion.pose(node, 0), a, 1.275);
+            let guess = node as f64 / STEPS as f64 - (3.7 - a) / spacing;
+            let Some((s, _, lateral)) = subject.foot(place, guess) else { continue };
+            let beyond = usize::from(s > end);
+            least[beyond] = least[beyond].min(3.0 - lateral);
+        }
+    }
+    let found = most(&chain, &corridor, last - 20..last + 1);
+    assert!(least[1] < least[0] - 0.1, "{least:?}");
+    assert!((least[0] - 0.01..least[0] + 0.01).contains(&found), "{found} {least:?}");
 }
