@@ -146,7 +146,7 @@ impl SetClaim<'_> {
                 all.extend(self.road(made, span));
                 all.extend(self.printed(&subject, row, span));
             }
-            row.certificate.outcome(all)
+            Outcome::of(all)
         };
         let mut outcome = outcome;
         rows.iter().map(|row| said(row, outcome(row))).collect()

@@ -136,10 +136,6 @@ impl Document {
             limiting: None,
         };
         let mut found: Vec<Finding> = along.check(&[claim]).remove(0);
-        // Where room is missing, nothing is promised, and a place without a bound contradicts nothing.
-        if rsc_m < 0.0 {
-            found.iter_mut().filter(|f| f.weight == Weight::Unbounded).for_each(|f| f.weight = Weight::Remark);
-        }
         let refused = rsc_m >= 0.0 && hinge_deg < 0.0;
         match (self.hinge_unit, along.filtered(self.vehicle.tracking_tolerance_m)) {
             (Some(unit), Some(swept)) if refused => {

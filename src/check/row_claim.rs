@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::rows::CertificateRow;
 use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named as _;
-use netcert_check::{Finding, Outcome, SpanClaim, Weight};
+use netcert_check::SpanClaim;
 
 impl CertificateRow {
     pub(super) fn has_numbers(&self) -> bool {
@@ -40,14 +40,5 @@ impl CertificateRow {
                 _ => Verdict::Unsafe(UnsafeReason::Articulation),
             },
         }
-    }
-
-    /// The outcome for these findings. An unsafe verdict promises nothing, so for a row of too little room a place without a bound
-    /// contradicts nothing, and is dropped.
-    pub(super) fn outcome(&self, mut found: Vec<Finding>) -> Outcome {
-        if self.verdict != Verdict::Safe && self.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
-            found.retain(|finding| finding.weight != Weight::Unbounded);
-        }
-        Outcome::of(found)
     }
 }

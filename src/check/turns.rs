@@ -226,7 +226,7 @@ impl TurnsClaim<'_> {
         if let Some(claimed) = said.rsc_published_m.filter(|claimed| *claimed > printed_m + TOLERANCE_M) {
             found.push(finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")));
         }
-        (said.outcome(found), path.corridor.spacing_m * path.corridor.len() as f64 * 1e-3)
+        (Outcome::of(found), path.corridor.spacing_m * path.corridor.len() as f64 * 1e-3)
     }
 }
 

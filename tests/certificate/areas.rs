@@ -5,7 +5,9 @@
 use crate::oracle;
 use crate::support::catalogue::catalogued;
 
-use netcert::stet::Options;
+use netcert::check::{Chain, SpanClaim, Subject, Weight, shift};
+use netcert::corridor::Corridor;
+use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
 use oracle::claim::claim;
 use oracle::crossing::{Crossing, Manoeuvre};
@@ -131,4 +133,55 @@ fn most_turns_that_can_be_driven_with_room_to_spare_are_certified() {
     }
     assert!(turns.len() >= 20, "only {} turns can be driven with room to spare", turns.len());
     assert!(5 * certified >= 4 * turns.len(), "only {certified} of {} turns are certified", turns.len());
+}
+
+/// The claim about a turn, and the plan that it is made for.
+fn planned(corridor: &Corridor, vehicle: &Vehicle) -> Option<(SpanClaim, Vec<i32>)> {
+    let whole = 0..corridor.len();
+    let model = Model::new(vehicle).unwrap();
+    let made = certify_spans(corridor, &[&model], std::slice::from_ref(&whole), &Options::default()).remove(0);
+    let result = &made.spans[0];
+    let claim = SpanClaim {
+        stations: whole,
+        rsc_m: result.rsc_m,
+        hinge_margin_rad: result.hinge_margin_rad,
+        shrink: result.shrink,
+        limiting: None,
+    };
+    result.rsc_m.map(|_| (claim, made.plan.coefficients.clone()))
+}
+
+/// In the turns drawn, corners of bodies pass vertices of the boundary, where the best direction is not the shortest way.
+#[test]
+fn the_second_program_confirms_turns_and_refutes_five_centimetres_more() {
+    let one = |index: u64| {
+        let mut draw = Draw(0x2bd_0000 + index * 7919);
+        let crossing = if index % 2 == 1 { Crossing::with_islands(&mut draw) } else { Crossing::drawn(&mut draw) };
+        let mut judged = |id: &&str| {
+            let vehicle = catalogued(id);
+            let drawn = (0..TURNS).map(|_| Manoeuvre::drawn(&mut draw, &crossing));
+            let ways: Vec<(f64, Manoeuvre)> = drawn.map(|way| (room_m(&crossing, &vehicle, &way), way)).collect();
+            let (_, way) = ways.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            let corridor = crossing.corridor(&way, &vehicle);
+            let (claim, plan) = planned(&corridor, &vehicle)?;
+            let chain = Chain::new(&vehicle);
+            let subject = Subject::new(&chain, &corridor, shift(&plan), true).unwrap();
+            let more = SpanClaim { rsc_m: claim.rsc_m.map(|rsc_m| rsc_m + 0.05), ..claim.clone() };
+            let [own, refuted] = [&claim, &more].map(|claim| {
+                let found = subject.check(std::slice::from_ref(claim)).remove(0);
+                found.into_iter().filter(|found| found.weight == Weight::Refuted).collect::<Vec<_>>()
+            });
+            let alarms = own.iter().map(|found| format!("{index} {id} {claim:?}: {found:?}")).collect();
+            // How far a body is outside is bounded loosely.
+            Some((alarms, (claim.rsc_m >= Some(0.0)).then_some(!refuted.is_empty())))
+        };
+        VEHICLES.iter().filter_map(&mut judged).collect::<Vec<_>>()
+    };
+    let turns: Vec<(Vec<String>, Option<bool>)> = (0..cases(60)).into_par_iter().flat_map_iter(one).collect();
+    let alarms: Vec<&String> = turns.iter().flat_map(|(alarms, _)| alarms).collect();
+    let fit: Vec<bool> = turns.iter().filter_map(|(_, refuted)| *refuted).collect();
+    let refuted = fit.iter().filter(|refuted| **refuted).count();
+    println!("{} turns, {} false alarms; {} fit, 5 cm more: {refuted} refuted", turns.len(), alarms.len(), fit.len());
+    assert!(turns.len() > 100 && alarms.is_empty(), "{alarms:#?}");
+    assert!(fit.len() > 50 && 10 * refuted >= 9 * fit.len(), "only {refuted} of {}", fit.len());
 }

@@ -36,6 +36,10 @@ const LIMITING_AT_END_M: f64 = 0.2;
 /// RSC of this much is therefore a bound, but its place may have more room, metres.
 const ROOMY_M: f64 = 2.0;
 
+/// Where an RSC is negative, a shortfall of no more than this is a remark, metres. Nothing is promised there, and the two programs differ
+/// by millimetres where a body passes over a boundary.
+const ROUGHLY_M: f64 = 0.01;
+
 /// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
 /// (proof, section 7).
 const FARTHEST: f64 = 1.6;
@@ -198,6 +202,12 @@ impl<'a> Subject<'a> {
                     findings[i].push(Finding { weight: short.1, ..finding("hinge_margin_deg", &short.0) });
                 }
             }
+        }
+        // Where room is missing, nothing is promised, and a place without a bound contradicts nothing.
+        let nothing_promised =
+            claims.iter().zip(&mut findings).filter(|(claim, _)| claim.rsc_m.is_some_and(|rsc_m| rsc_m < 0.0));
+        for finding in nothing_promised.flat_map(|(_, own)| own).filter(|finding| finding.weight == Weight::Unbounded) {
+            finding.weight = Weight::Remark;
         }
         findings
     }
@@ -370,7 +380,8 @@ impl<'a> Subject<'a> {
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((short_m, at)) = worst {
-                findings[i].push(Finding { weight: weight(short_m), ..finding("rsc_m", &self.describe(short_m, at)) });
+                let weight = rsc_weight(rsc_m, short_m);
+                findings[i].push(Finding { weight, ..finding("rsc_m", &self.describe(short_m, at)) });
             }
         }
     }
@@ -385,7 +396,7 @@ impl<'a> Subject<'a> {
         let asked: Vec<_> = own.iter().map(|&(i, target)| (steps(i), target)).collect();
         for ((i, _), worst) in own.iter().zip(swept.cramped(&asked, None)) {
             if let Some(worst) = worst {
-                let weight = weight(worst.short_m);
+                let weight = rsc_weight(claims[*i].rsc_m.unwrap_or_default(), worst.short_m);
                 findings[*i].push(Finding { weight, ..finding("rsc_m", &self.describe_cramped(&worst)) });
             }
         }
@@ -463,6 +474,11 @@ fn asked_alone(leeway_m: f64) -> f64 {
 #[must_use]
 pub fn finding(claim: &str, detail: &str) -> Finding {
     Finding { claim: claim.to_owned(), detail: detail.to_owned(), weight: Weight::Refuted }
+}
+
+/// The weight of an RSC that lacks so much.
+fn rsc_weight(rsc_m: f64, short_m: f64) -> Weight {
+    if rsc_m < 0.0 && short_m <= ROUGHLY_M { Weight::Remark } else { weight(short_m) }
 }
 
 /// The weight of a claim that lacks so much.

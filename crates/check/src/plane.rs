@@ -79,7 +79,7 @@ const ASLANT_M: f64 = 0.05;
 /// Small cells are also held apart from a segment in directions that are turned by these tangents from the shortest way, then by these
 /// steps from the best one of them.
 const TURNS: [f64; 7] = [0.0, -0.6, -0.3, -0.1, 0.1, 0.3, 0.6];
-const TURN_STEPS: [f64; 3] = [0.1, 0.05, 0.025];
+const TURN_STEPS: [f64; 6] = [0.1, 0.05, 0.025, 0.012, 0.006, 0.003];
 /// Once a claim has failed, only places that are worse by this are looked for, metres.
 const WORSE_M: f64 = 0.01;
 
@@ -393,6 +393,11 @@ impl Swept<'_> {
             let failed = bound < target || strict && there.is_none();
             let size = piece.size(&corners);
             let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
+            // A direction that is tried has a lever of its own. It proves nothing while only the filter bounds that place.
+            let aslant = there
+                .filter(|(bound, _)| failed && small && *bound >= target - ASLANT_M)
+                .map(|(_, way)| self.levers_aslant(&piece, way))
+                .filter(|levers| self.dull(piece.step, piece.unit, *levers));
             // A small piece whose middle does by a hair may fail all the same.
             let dull = (failed || size <= SMALL_M)
                 && work <= MOST_WORK
@@ -405,6 +410,9 @@ impl Swept<'_> {
             }
             if dull && !long && !wide {
                 self.sharpen_about(piece.step, piece.unit, piece.a);
+                self.sharpen_about(piece.step, piece.unit, levers);
+                open.push((piece, known));
+            } else if let Some(levers) = aslant.filter(|_| !dull && !refuted && work <= MOST_WORK) {
                 self.sharpen_about(piece.step, piece.unit, levers);
                 open.push((piece, known));
             } else if !dull && (failed || size <= FINEST_M || work > MOST_WORK) {
@@ -502,6 +510,12 @@ impl Swept<'_> {
         let levers = piece.a.into_iter().flat_map(|a| piece.c.map(|c| a - c * along / aside));
         let levers = levers.map(|a| a.clamp(rear, front));
         levers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], a| [low.min(a), high.max(a)])
+    }
+
+    /// [`Self::levers`] of all directions that [`Self::kept_aslant`] tries at first.
+    fn levers_aslant(&self, piece: &Piece, way: Point) -> [f64; 2] {
+        let all = TURNS.into_iter().flat_map(|tangent| self.levers(piece, turned(way, tangent)));
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], a| [low.min(a), high.max(a)])
     }
 
     /// The corners of a piece at the start of its time, then at its end.

@@ -508,3 +508,40 @@ fn what_is_beyond_the_corridor_when_an_area_ends_is_not_counted() {
     assert!(least[1] < least[0] - 0.1, "{least:?}");
     assert!((least[0] - 0.01..least[0] + 0.01).contains(&found), "{found} {least:?}");
 }
+
+/// Beside a corner of a body the best direction is not the shortest way. Its lever is elsewhere on the axis.
+#[test]
+fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
+    let (chain, corridor) = (semi(), turn_left());
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut aslant = 0;
+    for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1), (170, 0), (170, 1)] {
+        let step = (subject.road.lead + station) * STEPS;
+        let link = &chain.links[unit];
+        swept.sharpen_about(step, unit, [link.rear - 1.5, link.front + 1.5]);
+        for (a, along) in
+            [link.rear, link.front].into_iter().flat_map(|a| (-8..=8).map(move |k| (a, 0.05 * f64::from(k))))
+        {
+            let piece = Piece { unit, step, a: [a; 2], c: [link.half_width; 2], t: [0.0; 2] };
+            let pose = swept.pose(step, unit, 0.0);
+            let (corner, vertex) = (point(pose, a, link.half_width), point(pose, a + along, link.half_width + 0.35));
+            let way = [vertex[0] - corner[0], vertex[1] - corner[1]];
+            let segment = [vertex, [vertex[0] + way[0], vertex[1] + way[1]]];
+            let taken = swept.taken(&piece).still();
+            let kept = |tangent: f64| swept.kept(&piece, &taken, &[corner], segment, turned(way, tangent));
+            let dense = (-600..=600).map(|k| kept(1e-3 * f64::from(k))).fold(f64::NEG_INFINITY, f64::max);
+            let found = swept.kept_aslant(&piece, &taken, &[corner], segment, way);
+            assert!(found > dense - 2e-4, "{station} {unit} {a} {along}: {found} {dense}");
+            aslant += usize::from(found > kept(0.0) + 1e-3);
+            let (levers, link) = (swept.levers_aslant(&piece, way), &chain.links[unit]);
+            for tangent in TURNS {
+                let [u, n] = framed(turned(way, tangent), pose.u);
+                let lever =
+                    (a - link.half_width * u / n).clamp(link.rear - link.half_width, link.front + link.half_width);
+                assert!((levers[0]..=levers[1]).contains(&lever), "{lever} {levers:?}");
+            }
+        }
+    }
+    assert!(aslant > 20, "{aslant}");
+}
