@@ -87,6 +87,8 @@ pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
 pub use netcert_kernel::{published, stet};
 pub use netcert_osm::{account, osm};
 pub use netcert_roads::{corridor, network, turns};
+pub use netcert_rows as rows;
+pub use netcert_rows::settings;
 
 use netcert_osm::shape;
 
@@ -112,12 +114,10 @@ pub mod program;
 pub mod region;
 pub mod reporter;
 pub mod route;
-pub mod rows;
 mod scratch;
 pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
-pub mod settings;
 pub mod sign;
 mod sorter;
 mod sqlite;

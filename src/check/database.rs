@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::rules;
+use super::{row_claim, rules};
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
@@ -126,7 +126,8 @@ impl SetClaim<'_> {
         for row in rows {
             if let (Some(span), Some(claim)) = (
                 span_of(row),
-                span_of(row).and_then(|span| row.certificate.claim(&span.stations, made.corridor.spacing_m)),
+                span_of(row)
+                    .and_then(|span| row_claim::claim(&row.certificate, &span.stations, made.corridor.spacing_m)),
             ) {
                 claimed.push((row.edge, span));
                 claims.push(claim);
@@ -162,11 +163,11 @@ impl SetClaim<'_> {
             return Outcome::Malformed(why);
         }
         // A machine that failed claims nothing, nor does work that took too long.
-        if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
+        if row.certificate.verdict.claims_nothing() && !row_claim::has_numbers(&row.certificate) {
             return Outcome::Confirmed;
         }
         let expected = expected((self.network, edge), self.vehicle, unknown, row);
-        if unknown.is_some() && row.certificate.has_numbers() {
+        if unknown.is_some() && row_claim::has_numbers(&row.certificate) {
             return wrong("it has numbers, but nothing can be computed there".to_owned());
         }
         if expected == row.certificate.verdict {
@@ -220,7 +221,9 @@ fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {
     match row.certificate.verdict {
         // With numbers that hold, a time makes it safe.
-        Verdict::Unknown(UnknownReason::Time) if row.certificate.follows(Verdict::Safe) == Verdict::Safe => {
+        Verdict::Unknown(UnknownReason::Time)
+            if row_claim::follows(&row.certificate, Verdict::Safe) == Verdict::Safe =>
+        {
             Outcome::NotConfirmed(vec![finding("corridor", why)])
         }
         Verdict::Unknown(_) | Verdict::Forbidden(_) => Outcome::Confirmed,
@@ -242,5 +245,5 @@ fn expected(
         (.., Some(reason)) => return Verdict::Unknown(reason),
         _ => {}
     }
-    row.certificate.follows(legal.unwrap_or(Verdict::Safe))
+    row_claim::follows(&row.certificate, legal.unwrap_or(Verdict::Safe))
 }

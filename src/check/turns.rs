@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::database::{RowOutcome, SetReport};
-use super::rules;
+use super::{row_claim, rules};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
@@ -144,7 +144,7 @@ impl TurnsClaim<'_> {
             return (Outcome::Malformed(why), 0.0);
         }
         // A machine that failed claims nothing, nor does work that took too long.
-        if row.certificate.verdict.claims_nothing() && !row.certificate.has_numbers() {
+        if row.certificate.verdict.claims_nothing() && !row_claim::has_numbers(&row.certificate) {
             return (Outcome::Confirmed, 0.0);
         }
         let made = match self.barred(turn) {
@@ -192,7 +192,7 @@ impl TurnsClaim<'_> {
     fn with_corridors(&self, chain: &Chain, row: &TurnRow, (made, safe): (&TurnCorridors, Verdict)) -> (Outcome, f64) {
         let said = &row.certificate;
         let Some(code) = row.path_no else {
-            let told = if said.has_numbers() {
+            let told = if row_claim::has_numbers(said) {
                 Outcome::Malformed("it has numbers, but no path".to_owned())
             } else if matches!(said.verdict, Verdict::Unsafe(_)) {
                 Outcome::Confirmed
@@ -216,9 +216,9 @@ impl TurnsClaim<'_> {
             Ok(subject) => subject,
             Err(e) => return (Outcome::Malformed(format!("its corridor: {e}")), 0.0),
         };
-        let claims: Vec<_> = said.claim(&path.counted, path.corridor.spacing_m).into_iter().collect();
+        let claims: Vec<_> = row_claim::claim(said, &path.counted, path.corridor.spacing_m).into_iter().collect();
         let mut found: Vec<Finding> = subject.check(&claims).into_iter().flatten().collect();
-        let follows = said.follows(safe);
+        let follows = row_claim::follows(said, safe);
         if follows != said.verdict {
             found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }
@@ -233,7 +233,7 @@ impl TurnsClaim<'_> {
 /// Checks the verdict, the reason and the absence of numbers of a turn without a corridor.
 fn without_corridor(said: &CertificateRow, expected: Verdict) -> Outcome {
     let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
-    if said.has_numbers() {
+    if row_claim::has_numbers(said) {
         return wrong("it has numbers, but nothing can be computed there".to_owned());
     }
     if said.verdict == expected {

@@ -10,7 +10,7 @@ use super::assemble::{PartKind, RoutePath};
 use super::driver::Driver;
 use super::plan::{Answer, Route};
 use crate::rows::{Relative, Standing};
-use crate::stet::{self, Model};
+use crate::stet::{self, Model, SpanResult};
 use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -52,6 +52,11 @@ pub struct Peer {
     pub other: Standings,
 }
 
+/// What a comparison takes from a certificate of a route. `verdict` is the verdict with law and map.
+fn standing(verdict: Verdict, result: &SpanResult) -> Standing {
+    Standing::computed(verdict, result.rsc_m, result.hinge_margin_rad, result.shrink)
+}
+
 impl Peer {
     /// Compares the routes and obstacles of an answer. `driver` is that of the planner.
     ///
@@ -64,7 +69,7 @@ impl Peer {
     }
 
     fn route(&self, driver: &Driver, route: &Route, stop: &Stop) -> Result<Relative, Stopped> {
-        let own = Standing::computed(route.certificate.result.verdict(), &route.certificate.result);
+        let own = standing(route.certificate.result.verdict(), &route.certificate.result);
         if self.same {
             return Ok(Relative::to_itself(own));
         }
@@ -72,7 +77,7 @@ impl Peer {
         let certificate = stet::certify(&route.path.corridor, &self.model, options, stop)?;
         let other = certificate.map_or(Standing::bare(Verdict::Unknown(UnknownReason::Geometry)), |certificate| {
             let verdict = self.other.against(&route.path).unwrap_or_else(|| certificate.result.verdict());
-            Standing::computed(verdict, &certificate.result)
+            standing(verdict, &certificate.result)
         });
         let other = if route.path.corridor.areas.is_empty() { other } else { other.in_area() };
         Ok(Relative::between(own, other))

@@ -189,7 +189,8 @@ impl Database {
     ) -> Result<(), StoreError> {
         let written = self.acceptable(settings)?;
         let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
-        let pack = |certificate: EdgeCertificate| certificate.pack().map_err(|why| unsound(certificate.edge, why));
+        let pack =
+            |certificate: EdgeCertificate| Packed::edge(&certificate).map_err(|why| unsound(certificate.edge, why));
         let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         let edges: u32 =

@@ -1,7 +1,7 @@
 //! A certificate as it is stored: small integers, each rounded down, so that a stored value never claims more than the
 //! computed one. A `safe` certificate whose rounded numbers do not support it is refused.
 
-use crate::rows::{Conclusion, EdgeCertificate};
+use crate::rows::{Conclusion, EdgeCertificate, TurnCertificate};
 use crate::verdict::Verdict;
 
 use super::bulk::Bulk;
@@ -39,19 +39,24 @@ impl Packed {
     }
 }
 
-impl EdgeCertificate {
-    /// Packs the certificate. The error says why it may not be stored.
-    pub(super) fn pack(&self) -> Result<Packed, String> {
-        Ok(Packed { needs_cm: [need_cm(self.need_width_m), None], ..self.conclusion.pack(self.edge)? })
+impl Packed {
+    /// Packs the certificate of an edge. The error says why it may not be stored.
+    pub(super) fn edge(certificate: &EdgeCertificate) -> Result<Self, String> {
+        let needs_cm = [need_cm(certificate.need_width_m), None];
+        Ok(Self { needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.edge)? })
     }
-}
 
-impl Conclusion {
-    /// Packs the conclusion of the edge or turn with this index. The error says why it may not be stored.
-    pub(super) fn pack(&self, index: u32) -> Result<Packed, String> {
-        let verdict_no = verdict_no(self.verdict).ok_or("its verdict has no number")?;
+    /// Packs the certificate of a turn. The error says why it may not be stored.
+    pub(super) fn turn(certificate: &TurnCertificate) -> Result<Self, String> {
+        let needs_cm = [certificate.need.kerb_radius_m, certificate.need.flare_m].map(need_cm);
+        Ok(Self { path_no: certificate.path, needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.turn)? })
+    }
+
+    /// Packs the conclusion of the edge or turn with this index.
+    pub(super) fn conclusion(conclusion: &Conclusion, index: u32) -> Result<Self, String> {
+        let verdict_no = verdict_no(conclusion.verdict).ok_or("its verdict has no number")?;
         let fid = index.checked_add(1).ok_or("its index is out of range")?;
-        let mut packed = Packed {
+        let mut packed = Self {
             fid,
             verdict_no,
             rsc_mm: None,
@@ -63,7 +68,7 @@ impl Conclusion {
             needs_cm: [None; 2],
             path_no: None,
         };
-        if let Some(m) = &self.measured {
+        if let Some(m) = &conclusion.measured {
             packed.rsc_mm = floor_to(m.rsc_m, 1000.0);
             packed.rsc_published_mm = floor_to(m.rsc_published_m, 1000.0);
             packed.hinge_margin_cdeg = floor_to(m.hinge_margin_rad.to_degrees(), 100.0);
@@ -73,8 +78,8 @@ impl Conclusion {
             packed.limiting_at = Some(2 * unit.ok_or("its limiting unit is out of range")? + m.limiting_side as u16);
         }
         let holds = packed.rsc_mm >= Some(0) && packed.hinge_margin_cdeg >= Some(0);
-        if self.verdict == Verdict::Safe && !holds {
-            return Err(format!("its verdict is safe, but its numbers do not support that: {:?}", self.measured));
+        if conclusion.verdict == Verdict::Safe && !holds {
+            return Err(format!("its verdict is safe, but its numbers do not support that: {:?}", conclusion.measured));
         }
         Ok(packed)
     }
@@ -96,7 +101,7 @@ fn floor_to(value: f64, parts: f64) -> Option<i32> {
 }
 
 /// A need in centimetres, rounded up. `None` if it is out of range.
-pub(super) fn need_cm(need_m: Option<f64>) -> Option<u16> {
+fn need_cm(need_m: Option<f64>) -> Option<u16> {
     let cm = (need_m? * 100.0 - 1e-6).ceil();
     (0.0..60_000.0).contains(&cm).then_some(cm as u16)
 }
@@ -133,7 +138,7 @@ mod tests {
     }
 
     fn pack(verdict: Verdict, m: Measured) -> Result<Packed, String> {
-        Conclusion { verdict, measured: Some(m) }.pack(6)
+        Packed::conclusion(&Conclusion { verdict, measured: Some(m) }, 6)
     }
 
     const UNSAFE: Verdict = Verdict::Unsafe(UnsafeReason::Width);
@@ -173,7 +178,7 @@ mod tests {
         assert!(pack(Verdict::Safe, measured(0.1, -1e-9, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
-        assert!(Conclusion::bare(Verdict::Safe).pack(0).is_err());
+        assert!(Packed::conclusion(&Conclusion::bare(Verdict::Safe), 0).is_err());
     }
 
     #[test]

@@ -151,8 +151,8 @@ pub(super) struct PackedRenewal {
 pub(super) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
-    let edge = |known: &EdgeCertificate| known.pack().map_err(|why| unsound(known.edge, why));
-    let turn = |known: &TurnCertificate| known.pack().map_err(|why| unsound(known.turn, why));
+    let edge = |known: &EdgeCertificate| Packed::edge(known).map_err(|why| unsound(known.edge, why));
+    let turn = |known: &TurnCertificate| Packed::turn(known).map_err(|why| unsound(known.turn, why));
     let mut edges = set.edges.iter().map(edge).collect::<Result<Vec<_>, _>>()?;
     let mut turns = set.turns.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
     edges.sort_unstable_by_key(|row| row.fid);

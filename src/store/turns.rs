@@ -22,7 +22,7 @@ use super::junctions;
 use super::names::{corridor_no, of_kind};
 use super::network_read::{line, verdict, word};
 use super::numbers::{self, centimetres};
-use super::packed::{Packed, need_cm};
+use super::packed::Packed;
 use super::plans;
 use super::query::{Area, polygons};
 use super::sets::{self, Complete, Fault};
@@ -33,13 +33,6 @@ type Sql<T> = Result<T, sqlx::Error>;
 const COLUMNS: &str = "turn_certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, need_kerb_cm, need_flare_cm, \
                        path_no)";
-
-impl TurnCertificate {
-    pub(super) fn pack(&self) -> Result<Packed, String> {
-        let needs_cm = [self.need.kerb_radius_m, self.need.flare_m].map(need_cm);
-        Ok(Packed { path_no: self.path, needs_cm, ..self.conclusion.pack(self.turn)? })
-    }
-}
 
 /// All turns of a network, and one vehicle's certificates of them.
 pub struct TurnSet<'a> {
@@ -62,7 +55,7 @@ pub(super) struct PackedSet {
 impl TurnSet<'_> {
     /// Packs the set. The error names a turn whose certificate is missing or whose numbers do not support its verdict.
     pub(super) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
-        let pack = |turn: &TurnCertificate| turn.pack().map_err(|why| (turn.turn, why));
+        let pack = |turn: &TurnCertificate| Packed::turn(turn).map_err(|why| (turn.turn, why));
         let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         sets::check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;

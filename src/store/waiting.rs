@@ -105,7 +105,8 @@ mod tests {
             for set in [(3, 0), (1, 2), (1, 0)] {
                 // 4001 and 10,007 share no factor, so every edge comes once, in a scattered order.
                 let edge = (i * 4001 + set.0) % edges;
-                let packed = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut)).pack(edge).unwrap();
+                let none = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut));
+                let packed = Packed::conclusion(&none, edge).unwrap();
                 waiting.certificate(set, packed).unwrap();
                 if edge.is_multiple_of(10) {
                     waiting.plan(set, &StoredPlan::new(edge, &[1, 2]).unwrap()).unwrap();

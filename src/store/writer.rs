@@ -233,7 +233,7 @@ impl Writer {
         certificate: &EdgeCertificate,
     ) -> Result<(), StoreError> {
         let packed =
-            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+            Packed::edge(certificate).map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
         self.push(vehicle, policy, packed)
     }
 
@@ -282,7 +282,7 @@ impl Writer {
         certificate: &TurnCertificate,
     ) -> Result<(), StoreError> {
         let packed =
-            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
+            Packed::turn(certificate).map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
         let plan = certificate.plan.clone().map(|plan| StoredPlan { at: plan.at + first, ..plan });
         self.push_turn(vehicle, policy, Packed { fid: packed.fid + first, ..packed }, plan)
     }

@@ -117,9 +117,7 @@ fn modules_of_the_library_are_in_no_circle() {
 /// What makes, explains and draws certificates takes rows as values, wherever they come from.
 #[test]
 fn what_makes_and_explains_certificates_does_not_know_databases() {
-    for folder in
-        ["src/certificate", "src/certify", "src/diff", "src/explain", "src/manoeuvres", "src/picture", "src/rows"]
-    {
+    for folder in ["src/certificate", "src/certify", "src/diff", "src/explain", "src/manoeuvres", "src/picture"] {
         for (path, text) in sources(folder) {
             for module in ["store", "sqlx"] {
                 assert!(!names(&text, module), "{} uses {module}", path.display());

@@ -1,6 +1,7 @@
 //! Types that prover, checker and simulator share: vehicles, corridors, verdicts. This crate computes no certificates
 //! and knows neither maps nor databases.
 
+pub mod corrections;
 pub mod corridor;
 pub mod speed_profile;
 pub mod stop;

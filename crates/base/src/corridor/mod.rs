@@ -3,10 +3,12 @@
 mod area;
 mod closed;
 mod fit;
+mod side;
 
 pub use area::{Area, AreaSpan};
 pub use closed::CurvatureProfile;
 pub(crate) use closed::gentle_clothoid_step;
+pub use side::Side;
 
 /// A route corridor, sampled at uniform arc length along its C¹ centreline. Units are metres and radians. Arc length
 /// grows in driving direction, and lateral is positive to the left. All vectors have one entry per station.

@@ -31,13 +31,15 @@ mod swept;
 mod track;
 mod tube;
 
-use netcert_base::named;
 use std::ops::Range;
 use std::rc::Rc;
 
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::{Stop, Stopped};
 use netcert_base::verdict::{UnsafeReason, Verdict};
+
+pub use netcert_base::corrections::Options;
+pub use netcert_base::corridor::Side;
 
 pub use course::Course;
 pub use external_plan::{PlanError, certify_plan};
@@ -52,17 +54,6 @@ use plan::Unplanned;
 use swept::Swept;
 use track::Track;
 
-/// An edge of the corridor, seen in driving direction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Side {
-    /// Left of travel.
-    Left,
-    /// Right of travel.
-    Right,
-}
-
-named!(Side { Left = "left", Right = "right" });
-
 /// The place of the least leeway.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limiting {
@@ -76,28 +67,6 @@ pub struct Limiting {
     pub point_m: f64,
     /// Whether the boundary of an area limits there, and not the corridor's edge.
     pub in_area: bool,
-}
-
-/// Bounds of the corrections, and the number of sweeps spent on them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// Δq_max: largest shift of the steer path off the centreline, metres. 0 allows no correction.
-    pub max_shift_m: f64,
-    /// Number of CORRCEN sweeps after the centred one.
-    pub correction_sweeps: usize,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { max_shift_m: 1.5, correction_sweeps: 2 }
-    }
-}
-
-impl Options {
-    /// Whether any correction is allowed.
-    fn correct(&self) -> bool {
-        self.max_shift_m > 0.0 && self.correction_sweeps > 0
-    }
 }
 
 /// The result for one span of stations (an edge, or the whole corridor).

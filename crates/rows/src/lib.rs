@@ -1,8 +1,12 @@
 //! Plain values for edges, turns and their certificates. The modules that compute, store, explain, check, export and show
 //! certificates share them.
 //!
-//! Names and units of the columns are those of `docs/columns.md`. Nothing here depends on SQLite; `store` writes and reads
-//! these values.
+//! Names and units of the columns are those of `docs/columns.md`. Nothing here depends on SQLite, the prover or the checker; the store
+//! writes and reads these values. [`settings`] are what a certificate depends on besides network and vehicle.
+
+use netcert_base::{verdict, words};
+use netcert_osm::osm;
+use netcert_roads::{corridor, turns};
 
 mod bounds;
 mod cell;
@@ -16,6 +20,7 @@ mod plan;
 mod relative;
 mod rings;
 mod segment;
+pub mod settings;
 mod sides;
 mod turn;
 
@@ -28,9 +33,9 @@ pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, T
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;
 pub use plan::StoredPlan;
-pub(crate) use plan::unpack;
+pub use plan::unpack;
 pub use relative::{Relative, Standing};
-pub(crate) use rings::Rings;
+pub use rings::Rings;
 pub use segment::SegmentRow;
 pub use sides::DrivingSides;
 pub use turn::{TurnRow, TurnStep};

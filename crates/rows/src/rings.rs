@@ -5,15 +5,15 @@ use rustc_hash::FxHashMap;
 
 /// All roundabouts.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Rings {
+pub struct Rings {
     rings: Vec<Vec<u32>>,
     /// By arc: the index of its ring, and its index on the ring.
     at: FxHashMap<u32, (usize, usize)>,
 }
 
 impl Rings {
-    /// Indexes the rings of [`crate::store::Database::rings`].
-    pub(crate) fn new(rings: Vec<Vec<u32>>) -> Self {
+    /// Indexes the rings of turns as a database has them.
+    pub fn new(rings: Vec<Vec<u32>>) -> Self {
         let places = rings
             .iter()
             .enumerate()
@@ -22,7 +22,7 @@ impl Rings {
     }
 
     /// The edges from the first to the last in driving order. `None` if only one of them is on a ring, or they are on two.
-    pub(crate) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
+    pub fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
         let (&(ring, from), &(same, to)) = match (self.at.get(&first), self.at.get(&last)) {
             (None, None) if first == last => return Some(vec![first]),
             (None, None) => return Some(vec![first, last]),

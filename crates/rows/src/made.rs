@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::stet::Side;
 use crate::verdict::{UnknownReason, Verdict};
+use netcert_base::corridor::Side;
 
 use super::plan::StoredPlan;
 

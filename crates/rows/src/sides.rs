@@ -12,7 +12,7 @@ pub struct DrivingSides {
 
 impl DrivingSides {
     /// `others` are the edges on which traffic keeps to the other side than on most ways, sorted.
-    pub(crate) fn new(mostly_left: bool, others: Vec<u32>) -> Self {
+    pub fn new(mostly_left: bool, others: Vec<u32>) -> Self {
         Self { mostly_left, others }
     }
 

@@ -10,9 +10,9 @@ use serde_json::{Map, Value};
 
 use crate::corridor::Params;
 use crate::osm::facts::Policy;
-use crate::stet::Options;
 use crate::turns::{Kerbs, TurnParams};
 use crate::words::Named as _;
+use netcert_base::corrections::Options;
 
 /// How certificates are made.
 #[derive(Debug, Clone, PartialEq)]

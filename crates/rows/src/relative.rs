@@ -4,7 +4,6 @@
 //! says whether a second one was given less room by its own certificate. Both RSCs are lower bounds, each at the best plan found, so
 //! the comparison is one of certificates and no proof of what the reference needs.
 
-use crate::stet::{SpanResult, known_m};
 use crate::verdict::{UnsafeReason, Verdict};
 
 use super::cell::Kind::{Flag, Real};
@@ -35,7 +34,7 @@ impl Standing {
     /// (`None`: 1).
     #[must_use]
     pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>, shrink: Option<f64>) -> Self {
-        let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).round() as i64);
+        let rsc_mm = rsc_m.map(|rsc_m| (rsc_m * 1000.0).round() as i64);
         let hinges_hold = hinge_margin_deg.is_some_and(|margin| margin >= 0.0);
         let shrink_milli = (shrink.unwrap_or(1.0) * 1000.0).round() as u16;
         Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
@@ -48,12 +47,13 @@ impl Standing {
         Self::stored(verdict, rsc_m, hinge_margin_deg, shrink)
     }
 
-    /// Of a result at full precision. `verdict` is the verdict with law and map.
+    /// Of numbers at full precision: as [`Self::stored`], but the RSC is rounded down and the hinge margin is in radians. `verdict` is the
+    /// verdict with law and map.
     #[must_use]
-    pub fn computed(verdict: Verdict, result: &SpanResult) -> Self {
-        let rsc_mm = result.rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
-        let hinges_hold = result.hinge_margin_rad.is_some_and(|margin| margin >= 0.0);
-        let shrink_milli = (result.shrink * 1000.0).round() as u16;
+    pub fn computed(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_rad: Option<f64>, shrink: f64) -> Self {
+        let rsc_mm = rsc_m.map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
+        let hinges_hold = hinge_margin_rad.is_some_and(|margin| margin >= 0.0);
+        let shrink_milli = (shrink * 1000.0).round() as u16;
         Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
     }
 
@@ -141,7 +141,6 @@ impl Relative {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stet::{Limiting, Side};
     use crate::verdict::{ForbiddenReason, UnknownReason};
 
     const WIDTH: Verdict = Verdict::Unsafe(UnsafeReason::Width);
@@ -235,15 +234,7 @@ mod tests {
 
     #[test]
     fn full_precision_is_rounded_down_like_a_stored_certificate() {
-        let result = |rsc_m| SpanResult {
-            rsc_m: Some(rsc_m),
-            rsc_published_m: 0.0,
-            hinge_margin_rad: Some(0.1),
-            hinge_unit: 0,
-            shrink: 1.0,
-            limiting: Limiting { station: 0, unit: 0, side: Side::Left, point_m: 0.0, in_area: false },
-        };
-        let computed = |rsc_m| Standing::computed(Verdict::Safe, &result(rsc_m));
+        let computed = |rsc_m| Standing::computed(Verdict::Safe, Some(rsc_m), Some(0.1), 1.0);
         assert_eq!(computed(0.5007), standing(Verdict::Safe, 0.5));
         assert_eq!(said(computed(0.5007), computed(0.4999)), (Some(0.0), true));
         assert_eq!(said(computed(0.5007), computed(0.5005)), (Some(-0.001), false));

@@ -1,8 +1,8 @@
 //! The columns that certificates of edges and turns have in common.
 
-use crate::stet::Side;
 use crate::verdict::Verdict;
 use crate::words::{Named as _, verdict_words};
+use netcert_base::corridor::Side;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};

@@ -18,7 +18,8 @@ const MOST_COEFFICIENTS: usize = 1 << 22;
 pub struct StoredPlan {
     /// Index of the stroke's first edge in `Network::edges`, or of the turn.
     pub at: u32,
-    pub(crate) packed: Vec<u8>,
+    /// The coefficients, compressed.
+    pub packed: Vec<u8>,
 }
 
 impl StoredPlan {
@@ -67,7 +68,7 @@ fn shorter(bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// The coefficients of a packed plan. `None` for bytes that are no plan.
-pub(crate) fn unpack(packed: &[u8]) -> Option<Vec<i32>> {
+pub fn unpack(packed: &[u8]) -> Option<Vec<i32>> {
     let (&kind, rest) = packed.split_first()?;
     let mut plain = Vec::new();
     match kind {
