@@ -84,12 +84,16 @@
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 
 pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
+pub use netcert_evidence as evidence;
 pub use netcert_kernel::{published, stet};
 pub use netcert_osm::{account, osm};
 pub use netcert_roads::{corridor, network, turns};
 pub use netcert_rows as rows;
 pub use netcert_rows::settings;
+pub use netcert_store as store;
 
+#[cfg(feature = "export")]
+use netcert_files::{output_lock, scratch, sorter};
 use netcert_osm::shape;
 
 pub mod certificate;
@@ -98,14 +102,12 @@ pub mod check;
 #[cfg(feature = "export")]
 pub mod cluster;
 pub mod diff;
-pub mod evidence;
 pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;
 #[cfg(any(feature = "export", feature = "overture"))]
 mod folders;
 pub mod manoeuvres;
-mod output_lock;
 #[cfg(feature = "overture")]
 pub mod overture;
 pub mod picture;
@@ -114,12 +116,8 @@ pub mod program;
 pub mod region;
 pub mod reporter;
 pub mod route;
-mod scratch;
 pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod sign;
-mod sorter;
-mod sqlite;
-pub mod store;
 pub mod verify;

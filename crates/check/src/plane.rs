@@ -356,8 +356,13 @@ impl Swept<'_> {
             let small = piece.size(&corners) <= SMALL_M;
             let kept = |piece: &Piece, taken: &Taken, hull: &[Point], segment, way, target| {
                 let straight = self.kept(piece, taken, hull, segment, way);
-                let close = small && (target - ASLANT_M..target).contains(&straight);
-                if close { self.kept_aslant(piece, taken, hull, segment, way) } else { straight }
+                // A place by itself fails the claim, so it is judged with care however large its piece is.
+                let worth = small || hull.len() == 1;
+                if worth && (target - ASLANT_M..target).contains(&straight) {
+                    self.kept_aslant(piece, taken, hull, segment, way)
+                } else {
+                    straight
+                }
             };
             // What is far enough from the whole piece is far enough from its parts.
             let close = |(b, near): (&&Boundary, &Vec<u32>)| -> Vec<(u32, f64)> {
@@ -395,7 +400,7 @@ impl Swept<'_> {
             let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
             // A direction that is tried has a lever of its own. It proves nothing while only the filter bounds that place.
             let aslant = there
-                .filter(|(bound, _)| failed && small && *bound >= target - ASLANT_M)
+                .filter(|(bound, _)| failed && *bound >= target - ASLANT_M)
                 .map(|(_, way)| self.levers_aslant(&piece, way))
                 .filter(|levers| self.dull(piece.step, piece.unit, *levers));
             // A small piece whose middle does by a hair may fail all the same.

@@ -1,0 +1,157 @@
+//! Rows of the network as portions bring them, kept outside memory until they can be written in the order of the whole network.
+
+use std::io;
+use std::ops::Range;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::network::{Area, Edge, Narrowing, Portion, PortionRestriction, Road};
+use crate::osm::changes::Kind;
+use crate::osm::facts::{BackdropKind, CrossSection};
+use crate::osm::{Backdrop, LonLat};
+use netcert_rows::EdgeMeasure;
+
+use super::part::sorter;
+use netcert_files::sorter::Sorter;
+
+/// A road with its texts. `road` has none of them.
+#[derive(PartialEq, Serialize, Deserialize)]
+pub(super) struct RoadRow {
+    pub(super) road: Road,
+    pub(super) name: Option<String>,
+    pub(super) reference: Option<String>,
+}
+
+/// A directed edge. `edge` has no road and no ranges.
+#[derive(PartialEq, Serialize, Deserialize)]
+pub(super) struct EdgeRow {
+    pub(super) edge: Edge,
+    /// The edge's road, as an index into the whole network.
+    pub(super) road: u32,
+    /// Positions of its way before the edge's shape.
+    pub(super) place: u32,
+    /// Positions in way order.
+    pub(super) shape: Vec<LonLat>,
+    pub(super) narrowings: Vec<Narrowing>,
+    pub(super) section: CrossSection,
+    pub(super) measure: EdgeMeasure,
+}
+
+/// A stroke: edges of the whole network, in driving order.
+#[derive(PartialEq, Serialize, Deserialize)]
+pub(super) struct StrokeRow {
+    pub(super) approach: Vec<u32>,
+    pub(super) edges: Vec<u32>,
+    pub(super) closed: bool,
+}
+
+/// The rows of a network by their indices in it; strokes by their first edge.
+pub(super) struct NetworkRows {
+    pub(super) roads: Sorter<u32, RoadRow>,
+    pub(super) edges: Sorter<u32, EdgeRow>,
+    pub(super) strokes: Sorter<u32, StrokeRow>,
+}
+
+impl NetworkRows {
+    /// No rows yet. Temporary files are made beside `path`.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        Ok(Self { roads: sorter(path, "-roads")?, edges: sorter(path, "-edges")?, strokes: sorter(path, "-strokes")? })
+    }
+
+    /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.
+    pub(super) fn add(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> io::Result<()> {
+        for (index, row) in edge_rows(portion, measures) {
+            let NetworkRow { road, edge } = row;
+            if let Some(road) = road {
+                self.roads.push(edge.road, &road)?;
+            }
+            self.edges.push(index, &edge)?;
+        }
+        for row in stroke_rows(portion) {
+            if let Some(&first) = row.edges.first() {
+                self.strokes.push(first, &row)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What portions and the reader bring beside the network.
+pub(super) struct Gathered {
+    pub(super) restrictions: Vec<PortionRestriction>,
+    pub(super) areas: Vec<Area>,
+    /// By kind and object, the order of drawing.
+    pub(super) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
+}
+
+impl Gathered {
+    /// No rows yet. Temporary files are made beside `path`.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        Ok(Self { restrictions: Vec::new(), areas: Vec::new(), backdrop: sorter(path, "-backdrop")? })
+    }
+
+    /// Adds what lies behind the roads.
+    pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
+        things.iter().try_for_each(|thing| self.backdrop.push((thing.kind, thing.object), thing))
+    }
+}
+
+/// An edge, with its road at the first edge of it.
+pub(super) struct NetworkRow {
+    pub(super) road: Option<RoadRow>,
+    pub(super) edge: EdgeRow,
+}
+
+/// The edges that a portion owns with their indices in the whole network, in order. `measures` has one entry per edge of the portion's
+/// network, or is empty.
+pub(super) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Iterator<Item = (u32, NetworkRow)> {
+    let network = &portion.network;
+    let mut begin = 0;
+    let chunks = network.edges.chunk_by(|a, b| a.road == b.road).map(move |of_road| {
+        let first = begin;
+        begin += of_road.len() as u32;
+        (first, of_road)
+    });
+    let rows = chunks.filter_map(move |(first_index, of_road)| {
+        let first = of_road.first()?;
+        let place = |edge: &Edge| edge.shape.start - first.shape.start;
+        let road = || {
+            let text = |id: Option<_>| id.map(|id| network.strings.text(id).to_owned());
+            let road = network.road(first);
+            RoadRow {
+                name: text(road.name),
+                reference: text(road.reference),
+                road: Road { name: None, reference: None, ..road.clone() },
+            }
+        };
+        let owned = (first_index..).zip(of_road).filter(|(index, _)| portion.owns(*index));
+        Some(owned.map(move |(index, edge)| {
+            let row = EdgeRow {
+                edge: Edge { road: 0, shape: 0..0, narrowings: 0..0, ..edge.clone() },
+                road: portion.road(edge.road),
+                place: place(edge),
+                shape: network.shapes[edge.shape.start as usize..edge.shape.end as usize].to_vec(),
+                narrowings: network.narrowings[edge.narrowings.start as usize..edge.narrowings.end as usize].to_vec(),
+                section: network.section(edge),
+                measure: measures.get(index as usize).copied().unwrap_or_default(),
+            };
+            let road = (index == first_index).then(&road);
+            (portion.edge(index), NetworkRow { road, edge: row })
+        }))
+    });
+    rows.flatten()
+}
+
+/// The strokes that a portion owns.
+pub(super) fn stroke_rows(portion: &Portion) -> impl Iterator<Item = StrokeRow> {
+    let network = &portion.network;
+    portion.strokes().map(|stroke| {
+        let stroke = &network.strokes[stroke as usize];
+        let edges = |range: &Range<u32>| -> Vec<u32> {
+            let edges = &network.stroke_edges[range.start as usize..range.end as usize];
+            edges.iter().map(|&edge| portion.edge(edge)).collect()
+        };
+        StrokeRow { approach: edges(&stroke.approach), edges: edges(&stroke.edges), closed: stroke.closed }
+    })
+}

@@ -1,0 +1,302 @@
+//! Changes the register of measurements and all that depends on it, in one transaction: the columns of `edge` and `turn`, and the
+//! certificates of the edges and turns that see a change. If the program is killed, everything is as before.
+
+use sqlx::sqlite::SqliteConnection;
+use sqlx::{AssertSqlSafe, Row as _};
+
+use crate::account::AccountRow;
+use crate::network::Network;
+use crate::osm::facts::Policy;
+use crate::verdict::Verdict;
+use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
+use netcert_rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
+
+use super::bulk::Bulk;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::evidence::{self, Register};
+use super::kept::PAGE_ROWS;
+use super::names::{corridor_no, verdict_of};
+use super::network_read::rows;
+use super::network_write::add_widths;
+use super::packed::Packed;
+use super::plans;
+use super::records::{self, Run};
+use super::{junctions, sets, turns};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// The part of a set of certificates that was made again.
+pub struct SetRenewal {
+    /// Id of the vehicle.
+    pub vehicle: String,
+    /// Policy of the set.
+    pub policy: Policy,
+    /// One certificate for each edge of the strokes that were certified again.
+    pub edges: Vec<EdgeCertificate>,
+    /// Plans of those strokes.
+    pub plans: Vec<StoredPlan>,
+    /// Certificates of turns.
+    pub turns: Vec<TurnCertificate>,
+}
+
+/// All that changes.
+pub struct Renewal<'a> {
+    /// The network with what the new register says.
+    pub network: &'a Network,
+    /// The new register.
+    pub register: &'a Register,
+    /// Edges whose widths or centrelines may differ, with the measures of their corridors.
+    pub edges: &'a [(u32, EdgeMeasure)],
+    /// All turns of the network, if the database has turns and any of their kerbs may differ.
+    pub turns: Option<&'a [TurnFacts]>,
+    /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
+    pub junctions: Option<(&'a [i64], &'a [JunctionArea])>,
+    /// Certificates.
+    pub sets: Vec<SetRenewal>,
+    /// The record of the run.
+    pub run: &'a Run,
+    /// Its account.
+    pub account: &'a [AccountRow],
+}
+
+impl Database {
+    /// Begins a change: until [`Self::renew`], no other program changes the file, so what is read meanwhile stays true. Dropping the
+    /// database instead leaves everything as it was.
+    ///
+    /// # Errors
+    /// Another program is writing the file.
+    pub fn begin_change(&mut self) -> Result<(), StoreError> {
+        self.session.run(async |c| sqlx::query("BEGIN IMMEDIATE").execute(c).await.map(|_| ()))
+    }
+
+    /// Ends a change that [`Self::begin_change`] began: writes everything, or nothing.
+    ///
+    /// # Errors
+    /// Something may not or cannot be stored. Everything is then as before.
+    pub fn renew(&mut self, renewal: &mut Renewal<'_>) -> Result<(), StoreError> {
+        let mut packed = Vec::new();
+        for set in &mut renewal.sets {
+            packed.push(pack(set)?);
+        }
+        self.session.run(async |c| {
+            let done = write(c, renewal, &packed).await;
+            let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
+            let ended = sqlx::query(end).execute(&mut *c).await;
+            done.and(ended.map(|_| ()))
+        })
+    }
+
+    /// The verdicts of a set, by edge.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edge_verdicts(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
+        self.verdicts("certificate_compact", vehicle, policy)
+    }
+
+    /// The verdicts of a vehicle's turns, by turn. Empty if its turns are not certified.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_verdicts(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
+        self.verdicts("turn_certificate_compact", vehicle, policy)
+    }
+
+    fn verdicts(&mut self, table: &'static str, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
+        // A thousand rows come as one text: each row that sqlx hands over by itself costs a microsecond or more.
+        let pages: Vec<(i64, String)> = self.session.run(async |c| {
+            let sql = format!(
+                "SELECT max(fid), json_group_array(verdict_no ORDER BY fid) FROM {table} WHERE corridor_no = ? \
+                 AND vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+                 GROUP BY fid / {PAGE_ROWS} ORDER BY fid / {PAGE_ROWS}"
+            );
+            sqlx::query_as(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle).fetch_all(c).await
+        })?;
+        let mut verdicts = Vec::with_capacity(pages.len() * PAGE_ROWS);
+        let damaged = |row: usize| StoreError::sql(&self.session.path, content(format!("row {row} of {table}")));
+        for (last, page) in &pages {
+            let first = verdicts.len() + 1;
+            let numbers: Vec<i64> = serde_json::from_str(page).map_err(|_| damaged(first))?;
+            for (row, &number) in (first..).zip(&numbers) {
+                verdicts.push(verdict_of(number).ok_or_else(|| damaged(row))?);
+            }
+            // Rows have distinct numbers, so none is missing if the last one has the number of all.
+            if *last != verdicts.len() as i64 {
+                return Err(damaged(first));
+            }
+        }
+        Ok(verdicts)
+    }
+
+    /// Whether the database has the turns of its network.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn keeps_turns(&mut self) -> Result<bool, StoreError> {
+        let layers: i64 = self.session.run(async |c| {
+            sqlx::query_scalar("SELECT count(*) FROM gpkg_contents WHERE table_name = 'turn'").fetch_one(c).await
+        })?;
+        Ok(layers > 0)
+    }
+}
+
+/// A set's rows, ready to be written.
+pub(super) struct PackedRenewal {
+    edges: Vec<Packed>,
+    turns: Vec<Packed>,
+    turn_plans: Vec<StoredPlan>,
+}
+
+pub(super) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
+    let vehicle = &set.vehicle;
+    let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
+    let edge = |known: &EdgeCertificate| Packed::edge(known).map_err(|why| unsound(known.edge, why));
+    let turn = |known: &TurnCertificate| Packed::turn(known).map_err(|why| unsound(known.turn, why));
+    let mut edges = set.edges.iter().map(edge).collect::<Result<Vec<_>, _>>()?;
+    let mut turns = set.turns.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
+    edges.sort_unstable_by_key(|row| row.fid);
+    turns.sort_unstable_by_key(|row| row.fid);
+    let turn_plans = set.turns.iter_mut().filter_map(|turn| turn.plan.take()).collect();
+    Ok(PackedRenewal { edges, turns, turn_plans })
+}
+
+async fn write(c: &mut SqliteConnection, renewal: &mut Renewal<'_>, packed: &[PackedRenewal]) -> Sql<()> {
+    let Renewal { network, register, edges, turns, junctions, sets, run, account } = renewal;
+    evidence::write(c, register, &run.finished).await?;
+    change_edges(c, network, edges).await?;
+    if let Some(facts) = turns {
+        change_kerbs(c, facts).await?;
+    }
+    if let Some((nodes, areas)) = junctions {
+        junctions::replace(c, nodes, areas).await?;
+    }
+    replace_sets(c, sets, packed).await?;
+    records::add_run(c, run, account).await?;
+    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(c).await?;
+    Ok(())
+}
+
+/// Replaces some certificates of some sets, with their plans.
+pub(super) async fn replace_sets(
+    c: &mut SqliteConnection,
+    sets: &mut [SetRenewal],
+    packed: &[PackedRenewal],
+) -> Sql<()> {
+    for (set, packed) in sets.iter_mut().zip(packed) {
+        let number = sqlx::query_scalar("SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?");
+        let vehicle_no: u32 = number.bind(&set.vehicle).fetch_one(&mut *c).await?;
+        replace(c, (vehicle_no, corridor_no(set.policy)), set, packed).await?;
+    }
+    Ok(())
+}
+
+/// Replaces some certificates of a set, with their plans.
+async fn replace(
+    c: &mut SqliteConnection,
+    (vehicle_no, corridor): (u32, u8),
+    set: &mut SetRenewal,
+    packed: &PackedRenewal,
+) -> Sql<()> {
+    let of = (vehicle_no, corridor);
+    remove(c, ["certificate_compact", "plan"], of, &packed.edges).await?;
+    sets::insert_rows(c, of, packed.edges.iter().copied().map(Ok)).await?;
+    plans::insert(c, plans::STROKES, of, plans::sorted(&mut set.plans)).await?;
+    remove(c, ["turn_certificate_compact", "turn_plan"], of, &packed.turns).await?;
+    turns::insert_rows(c, of, packed.turns.iter().copied().map(Ok)).await?;
+    plans::insert(c, plans::TURNS, of, plans::sorted(&mut packed.turn_plans.clone())).await
+}
+
+async fn remove(
+    c: &mut SqliteConnection,
+    tables: [&'static str; 2],
+    (vehicle_no, corridor): (u32, u8),
+    rows: &[Packed],
+) -> Sql<()> {
+    for table in tables {
+        let sql: std::sync::Arc<str> =
+            format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ? AND fid = ?").into();
+        for row in rows {
+            let delete = sqlx::query(AssertSqlSafe(std::sync::Arc::clone(&sql)));
+            delete.bind(vehicle_no).bind(corridor).bind(row.fid).execute(&mut *c).await?;
+        }
+    }
+    Ok(())
+}
+
+/// The triggers that keep the spatial index of edges. They call functions that SQLite alone does not have, so they are away while rows
+/// of `edge` are written.
+pub(super) struct Triggers(Vec<(String, String)>);
+
+impl Triggers {
+    pub(super) async fn remove(c: &mut SqliteConnection) -> Sql<Self> {
+        let triggers =
+            "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge' ORDER BY rowid";
+        let triggers: Vec<(String, String)> = sqlx::query_as(triggers).fetch_all(&mut *c).await?;
+        for (name, _) in &triggers {
+            let name = name.replace('"', "\"\"");
+            sqlx::query(AssertSqlSafe(format!("DROP TRIGGER \"{name}\""))).persistent(false).execute(&mut *c).await?;
+        }
+        Ok(Self(triggers))
+    }
+
+    pub(super) async fn restore(self, c: &mut SqliteConnection) -> Sql<()> {
+        for (_, sql) in self.0 {
+            sqlx::query(AssertSqlSafe(sql)).persistent(false).execute(&mut *c).await?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the widths of edges and the measures of their corridors. No geometry changes.
+async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32, EdgeMeasure)]) -> Sql<()> {
+    if edges.is_empty() {
+        return Ok(());
+    }
+    let triggers = Triggers::remove(c).await?;
+    sqlx::query(
+        "CREATE TEMP TABLE changed (fid INTEGER PRIMARY KEY, lane DOUBLE, lane_source TEXT, direction DOUBLE, \
+         direction_source TEXT, carriageway DOUBLE, carriageway_source TEXT, radius DOUBLE, deviation DOUBLE)",
+    )
+    .execute(&mut *c)
+    .await?;
+    let mut bulk = Bulk::new("changed", 9);
+    for &(index, measure) in edges {
+        let edge = network.edges.get(index as usize).ok_or_else(|| content(format!("edge {index} is missing")))?;
+        bulk.add(i64::from(index) + 1);
+        add_widths(&mut bulk, &network.section(edge));
+        bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()));
+        bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()));
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    sqlx::query(
+        "UPDATE edge SET lane_width_m = n.lane, width_source = n.lane_source, direction_width_m = n.direction, \
+         direction_width_source = n.direction_source, carriageway_width_m = n.carriageway, \
+         carriageway_width_source = n.carriageway_source, min_radius_m = n.radius, centreline_deviation_m = n.deviation \
+         FROM changed AS n WHERE n.fid = edge.fid",
+    )
+    .execute(&mut *c)
+    .await?;
+    sqlx::query("DROP TABLE changed").execute(&mut *c).await?;
+    triggers.restore(c).await
+}
+
+/// Writes the kerbs of turns where they differ.
+async fn change_kerbs(c: &mut SqliteConnection, facts: &[TurnFacts]) -> Sql<()> {
+    let stored = rows(c, "SELECT kerb_radius_m, kerb_source FROM turn ORDER BY fid", |row| {
+        Ok((row.try_get::<Option<f64>, _>(0)?, row.try_get::<Option<String>, _>(1)?))
+    })
+    .await?;
+    if stored.len() != facts.len() {
+        return Err(content(format!("{} turns are stored, the network has {}", stored.len(), facts.len())));
+    }
+    for (fid, ((radius_m, source), turn)) in (1_i64..).zip(stored.into_iter().zip(facts)) {
+        let now = turn.kerb_source.map(KerbSource::name);
+        if (radius_m, source.as_deref()) != (turn.kerb_radius_m, now) {
+            let update = sqlx::query("UPDATE turn SET kerb_radius_m = ?, kerb_source = ? WHERE fid = ?");
+            update.bind(turn.kerb_radius_m).bind(now).bind(fid).execute(&mut *c).await?;
+        }
+    }
+    Ok(())
+}

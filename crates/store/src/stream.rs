@@ -1,0 +1,189 @@
+//! Streams the rows that an export reads: the facts that permits depend on, without geometry, and turns with all columns.
+//!
+//! Rows come in order of the network. Only some rows are in memory at the same time, whatever the size of the network.
+
+use std::path::Path;
+use std::pin::Pin;
+
+use futures_util::{Stream, TryStreamExt as _};
+use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row as _};
+use tokio::runtime::Runtime;
+
+use crate::osm::facts::Policy;
+use netcert_rows::{EdgeStep, TurnRow, TurnStep};
+
+use super::blob;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{corridor_no, width_columns};
+use super::network_read::{verdict, word, word_or_none};
+use super::turns::{self, TurnQuery};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// Rows that are read from the file one by one.
+pub struct Streamed<'d, T> {
+    stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
+    runtime: &'d Runtime,
+    path: &'d Path,
+    read: fn(&SqliteRow) -> Sql<T>,
+}
+
+impl<T> Iterator for Streamed<'_, T> {
+    type Item = Result<T, StoreError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let row = self.runtime.block_on(self.stream.try_next());
+        let row = row.and_then(|row| row.as_ref().map(self.read).transpose());
+        row.map_err(|e| StoreError::sql(self.path, e)).transpose()
+    }
+}
+
+/// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
+pub type StraightOn = (u32, Option<u32>);
+
+impl Database {
+    /// The facts of every edge for a vehicle. There are no rows if the vehicle is not certified under this policy.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
+        let [_, source] = width_columns(policy);
+        let sql = format!(
+            "SELECT c.fid, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), c.verdict_no, \
+             c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+             WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? ORDER BY c.fid"
+        );
+        Ok(self.streamed(sql, vehicle, policy, edge_step))
+    }
+
+    /// The facts of every turn for a vehicle. There are no rows if its turns are not certified: see [`Database::has_turns`].
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnStep>, StoreError> {
+        let sql = "SELECT c.fid, t.from_fid, t.to_fid, t.first_arc_fid, t.last_arc_fid, t.via_node, t.angle_deg, \
+                   c.verdict_no, c.rsc_mm FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+                   WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
+                   ORDER BY c.fid";
+        Ok(self.streamed(sql.to_owned(), vehicle, policy, turn_step))
+    }
+
+    /// Every turn of a vehicle with all columns. There are no rows if its turns are not certified.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_rows(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnRow>, StoreError> {
+        let sql = turns::statement(&TurnQuery::new(vehicle, policy));
+        let query = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle.to_owned());
+        let stream = query.fetch(&mut self.session.connection);
+        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: turns::turn_row })
+    }
+
+    /// The sequences of edges (indices into `Network::edges`) of turn restrictions. They are few, so all are read at once.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn forbidden_sequences(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT r.restriction_no, e.fid FROM restriction AS r JOIN restriction_edge AS e \
+                       ON e.position > r.edge_start AND e.position <= r.edge_end ORDER BY r.restriction_no, e.position";
+            let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
+            let edges = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            Ok(rows.chunk_by(|a, b| a.0 == b.0).map(edges).collect())
+        })
+    }
+
+    /// Every edge of a stroke with the edge that follows it straight on, stroke by stroke.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn straight_on(&mut self) -> Result<Streamed<'_, StraightOn>, StoreError> {
+        let sql = "SELECT a.fid, coalesce(b.fid, CASE WHEN s.closed THEN \
+                   (SELECT fid FROM stroke_edge WHERE position = s.edge_start + 1) END) \
+                   FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                   LEFT JOIN stroke_edge AS b ON b.position = a.position + 1 AND b.position <= s.edge_end \
+                   ORDER BY s.stroke_no, a.position";
+        Ok(self.streamed_plainly(sql.to_owned(), straight_on))
+    }
+
+    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order. They are few, so all are read at
+    /// once.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn rings(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT s.stroke_no, a.fid \
+                       FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                       JOIN edge AS e ON e.fid = a.fid JOIN road AS r ON r.road_no = e.road_no \
+                       WHERE r.roundabout ORDER BY s.stroke_no, a.position";
+            let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
+            let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
+        })
+    }
+
+    /// The rows of a statement without parameters.
+    pub(super) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
+        let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
+        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+    }
+
+    pub(super) fn streamed<T>(
+        &mut self,
+        sql: String,
+        vehicle: &str,
+        policy: Policy,
+        read: fn(&SqliteRow) -> Sql<T>,
+    ) -> Streamed<'_, T> {
+        let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle.to_owned()).bind(corridor_no(policy));
+        let stream = query.fetch(&mut self.session.connection);
+        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+    }
+}
+
+fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
+    let next: Option<u32> = row.try_get(1)?;
+    Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
+}
+
+fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
+    let fid: u32 = row.try_get(0)?;
+    let positions = blob::positions_of(row.try_get::<u32, _>(6)? as usize)
+        .ok_or_else(|| content(format!("edge {fid} has a geometry that is no line")))?;
+    Ok(EdgeStep {
+        edge: fid.saturating_sub(1),
+        way_id: row.try_get(1)?,
+        from_node: row.try_get(2)?,
+        to_node: row.try_get(3)?,
+        direction: word(row, 4)?,
+        shape_start: row.try_get(5)?,
+        positions,
+        verdict: verdict(row, 7, || format!("edge {fid}"))?,
+        rsc_m: metres(row, 8)?,
+        width_source: word_or_none(row, 9)?,
+    })
+}
+
+fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
+    let fid: u32 = row.try_get(0)?;
+    let index = |column| -> Sql<u32> { Ok(row.try_get::<u32, _>(column)?.saturating_sub(1)) };
+    let arc =
+        |column| -> Sql<Option<u32>> { Ok(row.try_get::<Option<u32>, _>(column)?.map(|fid| fid.saturating_sub(1))) };
+    Ok(TurnStep {
+        turn: fid.saturating_sub(1),
+        from: index(1)?,
+        to: index(2)?,
+        arcs: arc(3)?.zip(arc(4)?).map(|(first, last)| [first, last]),
+        via_node: row.try_get(5)?,
+        angle_deg: row.try_get(6)?,
+        verdict: verdict(row, 7, || format!("turn {fid}"))?,
+        rsc_m: metres(row, 8)?,
+    })
+}
+
+fn metres(row: &SqliteRow, column: usize) -> Sql<Option<f64>> {
+    Ok(row.try_get::<Option<i64>, _>(column)?.map(|mm| mm as f64 / 1000.0))
+}

@@ -1,0 +1,127 @@
+//! Certificates and plans that wait until they can be written in order. Strokes finish in any order and for several vehicles at the same
+//! time. Inserting certificates in that order would leave half-empty pages, and the file would depend on the threads.
+
+use std::io;
+use std::iter::Peekable;
+use std::path::Path;
+
+use netcert_rows::StoredPlan;
+
+use super::packed::Packed;
+use super::part::sorter;
+use netcert_files::sorter::{Sorted, Sorter};
+
+/// Vehicle number and corridor number.
+pub(super) type SetNo = (u32, u8);
+
+/// Set, and index of the edge or turn.
+type Key = (u32, u8, u32);
+
+/// Certificates of edges or of turns, with their plans.
+pub(super) struct Waiting {
+    certificates: Sorter<Key, Packed>,
+    plans: Sorter<Key, StoredPlan>,
+}
+
+impl Waiting {
+    /// Nothing waits yet. Temporary files are made at `path` with a word after it.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        let certificates = sorter(path, "-certificates")?;
+        Ok(Self { certificates, plans: sorter(path, "-plans")? })
+    }
+
+    pub(super) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: Packed) -> io::Result<()> {
+        self.certificates.push((vehicle, corridor, packed.fid), &packed)
+    }
+
+    pub(super) fn plan(&mut self, (vehicle, corridor): SetNo, plan: &StoredPlan) -> io::Result<()> {
+        self.plans.push((vehicle, corridor, plan.at), plan)
+    }
+
+    /// The same with other indices. Temporary files are made at `path` with a word after it.
+    pub(super) fn renumbered(self, path: &Path, numbers: &[u32]) -> io::Result<Self> {
+        let mut new = Self::create(path)?;
+        let number = |index: u32| {
+            let number = numbers.get(index as usize).copied();
+            number.ok_or_else(|| io::Error::other(format!("there is a certificate of turn {index}, but no such turn")))
+        };
+        for row in self.certificates.sorted()? {
+            let ((vehicle, corridor, fid), packed) = row?;
+            new.certificate((vehicle, corridor), Packed { fid: number(fid - 1)? + 1, ..packed })?;
+        }
+        for row in self.plans.sorted()? {
+            let ((vehicle, corridor, at), plan) = row?;
+            new.plan((vehicle, corridor), &StoredPlan { at: number(at)?, ..plan })?;
+        }
+        Ok(new)
+    }
+
+    /// Certificates and plans, each set by set.
+    pub(super) fn sorted(self) -> io::Result<(BySet<Packed>, BySet<StoredPlan>)> {
+        Ok((BySet(self.certificates.sorted()?.peekable()), BySet(self.plans.sorted()?.peekable())))
+    }
+}
+
+/// Rows of sets, one set after the other.
+pub(super) struct BySet<T>(Peekable<Sorted<Key, T>>)
+where
+    Sorted<Key, T>: Iterator<Item = io::Result<(Key, T)>>;
+
+impl<T> BySet<T>
+where
+    Sorted<Key, T>: Iterator<Item = io::Result<(Key, T)>>,
+{
+    /// The set of the next row. `None` if there is none.
+    pub(super) fn next_set(&mut self) -> io::Result<Option<SetNo>> {
+        let set =
+            self.0.peek().and_then(|row| row.as_ref().ok()).map(|((vehicle, corridor, _), _)| (*vehicle, *corridor));
+        match set {
+            Some(set) => Ok(Some(set)),
+            None => self.0.next().transpose().map(|_| None),
+        }
+    }
+
+    /// The rows that come next, as long as they are of a set.
+    pub(super) fn of(&mut self, set: SetNo) -> impl Iterator<Item = io::Result<T>> {
+        let next =
+            move || self.0.next_if(|row| row.as_ref().is_ok_and(|((v, c, _), _)| (*v, *c) == set) || row.is_err());
+        std::iter::from_fn(next).map(|row| row.map(|(_, row)| row))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::verdict::{UnknownReason, Verdict};
+    use netcert_rows::Conclusion;
+
+    #[test]
+    fn sets_come_back_in_order_whatever_the_order_they_came_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut waiting = Waiting::create(&folder.path().join("edges")).unwrap();
+        let edges = 10_007_u32;
+        for i in 0..edges {
+            for set in [(3, 0), (1, 2), (1, 0)] {
+                // 4001 and 10,007 share no factor, so every edge comes once, in a scattered order.
+                let edge = (i * 4001 + set.0) % edges;
+                let none = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut));
+                let packed = Packed::conclusion(&none, edge).unwrap();
+                waiting.certificate(set, packed).unwrap();
+                if edge.is_multiple_of(10) {
+                    waiting.plan(set, &StoredPlan::new(edge, &[1, 2]).unwrap()).unwrap();
+                }
+            }
+        }
+        let backwards: Vec<u32> = (0..edges).rev().collect();
+        let renumbered = waiting.renumbered(&folder.path().join("again"), &backwards).unwrap();
+        let (mut certificates, mut plans) = renumbered.sorted().unwrap();
+        for expected in [(1, 0), (1, 2), (3, 0)] {
+            assert_eq!(certificates.next_set().unwrap(), Some(expected));
+            assert!(certificates.of(expected).map(|row| row.unwrap().fid).eq(1..=edges));
+            assert!(plans.of(expected).map(|plan| plan.unwrap().at).eq((0..edges).filter(|at| at % 10 == 6)));
+        }
+        assert_eq!(certificates.next_set().unwrap(), None);
+        assert!(plans.next_set().unwrap().is_none());
+    }
+}
