@@ -38,7 +38,7 @@ const ROOMY_M: f64 = 2.0;
 
 /// Where an RSC is negative, a shortfall of no more than this is a remark, metres. Nothing is promised there, and the two programs differ
 /// by millimetres where a body passes over a boundary.
-const ROUGHLY_M: f64 = 0.01;
+const ROUGHLY_M: f64 = 0.005;
 
 /// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
 /// (proof, section 7).

@@ -252,6 +252,21 @@ fn a_limiting_place_in_an_area_must_be_short_of_room() {
 }
 
 #[test]
+fn some_millimetres_of_what_is_missing_are_a_remark() {
+    let chain = semi();
+    let weights = |half: f64, more_m: f64| -> Vec<Weight> {
+        let corridor = straight(&[(0..160, vec![strip(half)])]);
+        let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+        let asked = claim(40..110, most(&chain, &corridor, 40..110) + more_m);
+        subject.check(&[asked]).remove(0).into_iter().map(|finding| finding.weight).collect()
+    };
+    // 2.2 m to either side leave room, 1.4 m are too little.
+    assert_eq!(weights(2.2, 0.003), [Weight::Refuted]);
+    assert_eq!(weights(1.4, 0.003), [Weight::Remark]);
+    assert_eq!(weights(1.4, 0.02), [Weight::Refuted]);
+}
+
+#[test]
 fn columns_claim_nothing_in_areas() {
     let chain = semi();
     // The steer axle is in the area from station 40 to 120. So no corridor step touches what is 60 to 100.
