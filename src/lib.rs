@@ -94,6 +94,7 @@ pub use netcert_store as store;
 
 #[cfg(feature = "export")]
 use netcert_files::{output_lock, scratch, sorter};
+#[cfg(feature = "overture")]
 use netcert_osm::shape;
 
 pub mod certificate;

@@ -33,6 +33,7 @@ mod route_cli;
 mod serve;
 mod settings;
 mod sign;
+mod snapshots;
 mod support;
 mod survey;
 mod tasks;

@@ -51,7 +51,7 @@ fn file_if(path: &Path, same: &dyn Fn(&File, &Path) -> bool) -> io::Result<Outpu
 /// Creates or empties the folder at `path` and locks it.
 ///
 /// # Errors
-/// As [`file`].
+/// As [`file()`].
 pub fn folder(path: &Path) -> io::Result<OutputLock> {
     folder_if(path, &same_file)
 }
