@@ -3,6 +3,7 @@
 
 pub mod corrections;
 pub mod corridor;
+pub mod leeway;
 pub mod speed_profile;
 pub mod stop;
 pub mod vehicle;

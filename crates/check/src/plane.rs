@@ -357,8 +357,8 @@ impl Swept<'_> {
             let kept = |piece: &Piece, taken: &Taken, hull: &[Point], segment, way, target| {
                 let straight = self.kept(piece, taken, hull, segment, way);
                 // A place by itself fails the claim, so it is judged with care however large its piece is.
-                let worth = small || hull.len() == 1;
-                if worth && (target - ASLANT_M..target).contains(&straight) {
+                let careful = small || hull.len() == 1;
+                if careful && (target - ASLANT_M..target).contains(&straight) {
                     self.kept_aslant(piece, taken, hull, segment, way)
                 } else {
                     straight

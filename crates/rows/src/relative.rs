@@ -4,6 +4,8 @@
 //! says whether a second one was given less room by its own certificate. Both RSCs are lower bounds, each at the best plan found, so
 //! the comparison is one of certificates and no proof of what the reference needs.
 
+use netcert_base::leeway::known_m;
+
 use crate::verdict::{UnsafeReason, Verdict};
 
 use super::cell::Kind::{Flag, Real};
@@ -34,7 +36,7 @@ impl Standing {
     /// (`None`: 1).
     #[must_use]
     pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>, shrink: Option<f64>) -> Self {
-        let rsc_mm = rsc_m.map(|rsc_m| (rsc_m * 1000.0).round() as i64);
+        let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).round() as i64);
         let hinges_hold = hinge_margin_deg.is_some_and(|margin| margin >= 0.0);
         let shrink_milli = (shrink.unwrap_or(1.0) * 1000.0).round() as u16;
         Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
@@ -51,7 +53,7 @@ impl Standing {
     /// verdict with law and map.
     #[must_use]
     pub fn computed(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_rad: Option<f64>, shrink: f64) -> Self {
-        let rsc_mm = rsc_m.map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
+        let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
         let hinges_hold = hinge_margin_rad.is_some_and(|margin| margin >= 0.0);
         let shrink_milli = (shrink * 1000.0).round() as u16;
         Self { verdict, rsc_mm, hinges_hold, shrink_milli, in_area: false }
@@ -207,7 +209,8 @@ mod tests {
     #[test]
     fn without_both_rscs_there_is_no_comparison() {
         let (there, none) = (standing(Verdict::Safe, 1.0), Standing::bare(WIDTH));
-        for (vehicle, reference) in [(there, none), (none, there), (none, none)] {
+        let open = Standing::stored(WIDTH, Some(-1000.0), Some(-515.67), None);
+        for (vehicle, reference) in [(there, none), (none, there), (none, none), (there, open), (open, there)] {
             assert_eq!(said(vehicle, reference), (None, false));
         }
     }

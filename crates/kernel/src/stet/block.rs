@@ -12,8 +12,7 @@ const FADING_BLOCKS: usize = 3;
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
 /// Number of rows that the motion writes per unit, one per field.
 pub(super) const FIELDS: usize = 11;
-/// Leeway at a station that no body point visits.
-pub(super) const UNVISITED_M: f64 = 1e9;
+pub(super) use netcert_base::leeway::UNVISITED_M;
 /// Leeway of a point without a foot: nothing is certified there.
 pub(super) const LOST_M: f64 = -1e3;
 

@@ -40,6 +40,7 @@ use netcert_base::verdict::{UnsafeReason, Verdict};
 
 pub use netcert_base::corrections::Options;
 pub use netcert_base::corridor::Side;
+pub use netcert_base::leeway::known_m;
 
 pub use course::Course;
 pub use external_plan::{PlanError, certify_plan};
@@ -156,13 +157,6 @@ pub struct Certificate {
     pub left_centred_m: Vec<f64>,
     /// As `right_m`, before correction.
     pub right_centred_m: Vec<f64>,
-}
-
-/// A leeway of a [`Certificate`]'s columns. `None` if the bounds do not close there, or if no body point passes the
-/// station.
-#[must_use]
-pub fn known_m(leeway_m: f64) -> Option<f64> {
-    Some(leeway_m).filter(|leeway_m| spans::known(*leeway_m))
 }
 
 /// Certifies vehicles over `spans` of stations. Each vehicle drives the whole corridor by itself, and each gets one

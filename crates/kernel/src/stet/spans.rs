@@ -2,6 +2,10 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use netcert_base::leeway::known_m;
+
+pub(super) use netcert_base::leeway::NOTHING_M;
+
 use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
@@ -19,9 +23,6 @@ const BESIDE_M: f64 = 0.6;
 /// A vehicle longer than this counts by its length.
 const LONG_M: f64 = 56.0;
 
-/// RSC where the bounds do not close. Any leeway below half of it means the same.
-pub(super) const NOTHING_M: f64 = -1000.0;
-
 /// A span's numbers as the sweep has them. [`NOTHING_M`] and [`NOT_CLOSED_RAD`] mark missing numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Least {
@@ -36,7 +37,7 @@ pub(super) struct Least {
 impl Least {
     /// Whether the bounds close.
     fn closes(&self) -> bool {
-        self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known(self.rsc_m)
+        self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known_m(self.rsc_m).is_some()
     }
 
     /// Whether a leeway or a hinge margin is negative, or missing.
@@ -66,11 +67,6 @@ impl Least {
             limiting: self.limiting,
         }
     }
-}
-
-/// Whether a leeway is a number and not one of the marks [`NOTHING_M`] and [`UNVISITED_M`].
-pub(super) fn known(leeway_m: f64) -> bool {
-    leeway_m > 0.5 * NOTHING_M && leeway_m < 0.5 * UNVISITED_M
 }
 
 fn beside(track: &Track) -> usize {
