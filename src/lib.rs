@@ -85,40 +85,36 @@
 
 pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
 pub use netcert_evidence as evidence;
+pub use netcert_files::seal;
 pub use netcert_kernel::{published, stet};
 pub use netcert_osm::{account, osm};
+#[cfg(feature = "overture")]
+pub use netcert_overture as overture;
 pub use netcert_roads::{corridor, network, turns};
 pub use netcert_rows as rows;
 pub use netcert_rows::settings;
 pub use netcert_store as store;
+pub use netcert_verify as verify;
+pub use netcert_verify::check;
 
 #[cfg(feature = "export")]
-use netcert_files::{output_lock, scratch, sorter};
-#[cfg(feature = "overture")]
-use netcert_osm::shape;
+use netcert_files::{folders, output_lock, scratch, sorter};
 
 pub mod certificate;
 pub mod certify;
-pub mod check;
 #[cfg(feature = "export")]
 pub mod cluster;
 pub mod diff;
 pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;
-#[cfg(any(feature = "export", feature = "overture"))]
-mod folders;
 pub mod manoeuvres;
-#[cfg(feature = "overture")]
-pub mod overture;
 pub mod picture;
 pub mod pipeline;
 pub mod program;
 pub mod region;
 pub mod reporter;
 pub mod route;
-pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod sign;
-pub mod verify;

@@ -34,6 +34,24 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
     assert!(rows(&later) == rows(&patient), "updated, they are those of a patient run");
 }
 
+#[test]
+fn a_check_without_patience_confirms_nothing_and_ends() {
+    let place = Place::with_demo();
+    let ask = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 40";
+    let hasty = place.netcert(&format!("{ask} --patience 0")).fails();
+    let (out, err) = (hasty.out(), hasty.err());
+    assert!(out.contains("not confirmed") && out.contains("the check took longer than 0 s and was ended"), "{out}");
+    assert!(err.contains("claims are not confirmed"), "{err}");
+    place.netcert(ask).succeeds();
+    // A certificate file is guarded, too.
+    let straight = r#"{"frame": "metres", "points": [[0, 0], [600, 0]], "width_m": 4.0}"#;
+    let place = place.file("c.json", straight);
+    place.netcert("corridor c.json --vehicle EU-SEMI16.5 --out certificate.json").succeeds();
+    let hasty = place.netcert("verify certificate.json --patience 0").fails().out();
+    assert!(hasty.contains("the check took longer than 0 s"), "{hasty}");
+    place.netcert("verify certificate.json").succeeds();
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {

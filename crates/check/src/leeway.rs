@@ -17,6 +17,7 @@ use crate::motion::{Motion, Pose, STEPS, along};
 use crate::road::{Place, Road};
 use crate::search::{Shortfalls, Targets};
 use crate::tubes::{Tube, Tubes};
+use netcert_base::watch;
 
 /// Decisions closer than this are repeated in intervals, metres.
 pub(crate) const CLOSE_M: f64 = 1e-6;
@@ -207,6 +208,7 @@ impl<'a> Swept<'a> {
 
     /// Decides a cell by exact corners.
     pub(crate) fn cell(&mut self, cell: &Cell, hints: [Hint; 2], targets: &Targets, found: &mut Shortfalls) {
+        watch::poll();
         let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
         // Rough feet: the hint, or the place on a straight road.
         let guess = |k: usize| {

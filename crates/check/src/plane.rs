@@ -56,6 +56,7 @@ use crate::leeway::{Swept, point};
 use crate::motion::{STEPS, length};
 use crate::road::RoadError;
 use netcert_base::corridor::{Area, AreaSpan, Corridor};
+use netcert_base::watch;
 
 /// Deducted for rounding, metres. Coordinates of 1e8 m are exact to 3e-8.
 const ROUNDING_M: f64 = 1e-6;
@@ -345,6 +346,7 @@ impl Swept<'_> {
         let mut open: Vec<(Piece, Vec<Vec<u32>>)> = vec![(piece, near)];
         let (mut least, mut work) = (None, 0);
         while let Some((piece, near)) = open.pop() {
+            watch::poll();
             let taken = self.taken(&piece);
             let needed = taken.needed(target, strict);
             if needed <= 0.0 {

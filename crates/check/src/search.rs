@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::coarse::{Slab, Spot};
 use crate::leeway::{CLOSE_M, Cell, Hint, Swept};
 use crate::motion::STEPS;
+use netcert_base::watch;
 
 /// Most halvings of a body for coarse bounds.
 const COARSE_HALVINGS: u32 = 4;
@@ -54,6 +55,7 @@ impl Swept<'_> {
         let mut spots = vec![[None; 2]; self.chain.links.len() * 2];
         let all = self.steps(first..last + 1);
         for start in all.clone().step_by(STEPS) {
+            watch::poll();
             let steps = start..(start + STEPS).min(all.end);
             if steps.clone().any(|step| self.road.plane.decides(step)) {
                 // In areas feet move on unseen.

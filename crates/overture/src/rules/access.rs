@@ -3,7 +3,7 @@
 use super::measures;
 use super::{Limit, LimitKind, Oneway, Permission, headings};
 use crate::osm::facts::{Legal, RuleSet};
-use crate::overture::record::{Access as Rule, When};
+use crate::record::{Access as Rule, When};
 
 /// How specific the modes of a rule are for a lorry. The more specific one is the greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,7 +48,7 @@ fn rank(when: Option<&When>, whom: For) -> (Option<Rank>, bool) {
 }
 
 /// Whether a rule that closes or slows may concern a lorry. An unknown mode may be one.
-pub(in crate::overture) fn concerns_lorries(when: Option<&When>) -> bool {
+pub(crate) fn concerns_lorries(when: Option<&When>) -> bool {
     let (rank, strange) = rank(when, For::Lorries);
     rank.is_some() || strange
 }

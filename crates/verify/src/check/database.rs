@@ -15,6 +15,7 @@ use crate::rows::EdgeRow;
 use crate::stop::{Stop, Stopped};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
 use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
@@ -72,8 +73,8 @@ impl SetClaim<'_> {
     /// `stop` was told. Each stroke polls it.
     pub fn check(&self, stop: &Stop) -> Result<SetReport, Stopped> {
         let chain = Chain::new(self.vehicle);
-        let part = |stroke| stop.check().map(|()| self.stroke(&chain, stroke));
-        let parts: Vec<SetReport> = self.network.strokes.par_iter().map(part).collect::<Result<_, _>>()?;
+        let part = |(number, stroke)| stop.check().map(|()| self.in_time(&chain, number, stroke));
+        let parts: Vec<SetReport> = self.network.strokes.par_iter().enumerate().map(part).collect::<Result<_, _>>()?;
         let mut report = SetReport::default();
         for part in parts {
             report.rows.extend(part.rows);
@@ -82,11 +83,27 @@ impl SetClaim<'_> {
         Ok(report)
     }
 
+    /// The outcomes of a stroke's rows, none of which is confirmed if they take too long.
+    fn in_time(&self, chain: &Chain, index: usize, stroke: &Stroke) -> SetReport {
+        let edges = self.edges(stroke);
+        let edge = edges.first().and_then(|&edge| self.network.edges.get(edge as usize)).map(|edge| edge.id);
+        let (number, of) = (index as u64 + 1, self.network.strokes.len() as u64);
+        let work = Work { what: "stroke", number, of, edge };
+        watch::guarded(work, watch::patience(), || self.stroke(chain, stroke)).unwrap_or_else(|TookTooLong| {
+            let rows = edges.iter().filter_map(|edge| self.rows.get(edge));
+            SetReport { rows: rows.map(|row| said(row, rules::took_too_long())).collect(), swept_km: 0.0 }
+        })
+    }
+
+    fn edges(&self, stroke: &Stroke) -> &[u32] {
+        self.network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize).unwrap_or_default()
+    }
+
     fn stroke(&self, chain: &Chain, stroke: &Stroke) -> SetReport {
-        let edges = self.network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize);
-        let rows: Vec<&EdgeRow> = edges.unwrap_or_default().iter().filter_map(|edge| self.rows.get(edge)).collect();
+        let edges = self.edges(stroke);
+        let rows: Vec<&EdgeRow> = edges.iter().filter_map(|edge| self.rows.get(edge)).collect();
         let mut report = SetReport::default();
-        let Some(first) = edges.and_then(|edges| edges.first()).filter(|_| !rows.is_empty()) else { return report };
+        let Some(first) = edges.first().filter(|_| !rows.is_empty()) else { return report };
         match stroke_corridor(self.network, stroke, self.policy, self.params) {
             Err(reason) => {
                 let outcome = |row: &EdgeRow| self.without_claims(row, Some(reason));

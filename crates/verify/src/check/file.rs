@@ -7,7 +7,9 @@
 use serde_json::Value;
 
 use super::document::{COLUMNS, Document, TubeClaim};
+use super::rules;
 use crate::seal;
+use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
 use netcert_check::Swept;
 use netcert_check::plan;
@@ -68,7 +70,10 @@ pub fn certificate(text: &str) -> Report {
     };
     report.conditions = conditions(&document);
     match Document::read(&document, &mut report.unknown) {
-        Ok(read) => read.check(&mut report.claims),
+        Ok(read) => match watch::guarded(Work::only("certificate"), watch::patience(), || read.check()) {
+            Ok(claims) => report.claims.extend(claims),
+            Err(TookTooLong) => report.claims.push(("work".to_owned(), rules::took_too_long())),
+        },
         Err(wrong) => {
             let path = wrong.split(':').next().unwrap_or_default().to_owned();
             report.claims.push((path, Outcome::Malformed(wrong)));
@@ -92,7 +97,7 @@ const CLAIMS: [&str; 8] =
     ["verdict", "rsc_m", "hinge_margin_deg", "hinge_unit", "limiting", "rsc_published_m", "leeway", "tubes"];
 
 impl Document {
-    fn check(&self, claims: &mut Vec<(String, Outcome)>) {
+    fn check(&self) -> Vec<(String, Outcome)> {
         let chain = Chain::new(&self.vehicle);
         let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), false);
         let centred = Subject::new(&chain, &self.corridor, |_| 0.0, false);
@@ -100,8 +105,7 @@ impl Document {
             (Ok(along), Ok(centred)) => (along, centred),
             (Err(e), _) | (_, Err(e)) => {
                 let said = format!("corridor.stations[{}]: {}", e.station, e.problem);
-                claims.push(("corridor".to_owned(), Outcome::Malformed(said)));
-                return;
+                return vec![("corridor".to_owned(), Outcome::Malformed(said))];
             }
         };
         let mut found = self.bounded(&along);
@@ -119,10 +123,11 @@ impl Document {
             }
         }
         found.extend(self.tubes(&along));
-        for claim in CLAIMS {
-            let own: Vec<Finding> = found.iter().filter(|f| f.claim.starts_with(claim)).cloned().collect();
-            claims.push((claim.to_owned(), Outcome::of(own)));
-        }
+        let outcome = |claim: &str| {
+            let own = found.iter().filter(|f| f.claim.starts_with(claim)).cloned().collect();
+            (claim.to_owned(), Outcome::of(own))
+        };
+        CLAIMS.map(outcome).to_vec()
     }
 
     /// Checks the RSC, the hinge margin, and the hinge that is the reason for the verdict.

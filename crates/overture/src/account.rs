@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::account::AccountRow;
+use netcert_osm::account::AccountRow;
 
 /// Counts of what was read. Read is the sum of kept and left out.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -39,7 +39,7 @@ pub enum VerifyError {
     /// Overture's files cannot be read.
     #[cfg(feature = "overture")]
     #[error(transparent)]
-    Overture(#[from] crate::overture::OvertureError),
+    Overture(#[from] netcert_overture::OvertureError),
     /// The caller cancelled the work.
     #[error(transparent)]
     Stopped(#[from] Stopped),

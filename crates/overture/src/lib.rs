@@ -4,6 +4,12 @@
 //! nor on names and order of the files. Rules become the facts that tags become (`rules/`). A damaged file is an error, never a shorter
 //! result.
 
+#[cfg(test)]
+use netcert_base::{vehicle, verdict};
+use netcert_files::folders;
+use netcert_osm::{osm, shape};
+use netcert_rows as rows;
+
 mod account;
 mod connectors;
 mod error;

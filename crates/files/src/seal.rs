@@ -4,7 +4,7 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 /// Marks the last member.
-pub(crate) const MARK: &str = ",\"sha256\":\"";
+pub const MARK: &str = ",\"sha256\":\"";
 
 /// Adds the member `sha256` to a document: the hash of all bytes before its own comma.
 #[must_use]
@@ -14,7 +14,7 @@ pub fn sealed(document: &Value) -> String {
 }
 
 /// The text of a document with its seal. `body`: all bytes before the comma of the seal.
-pub(crate) fn sealed_body(body: &str) -> String {
+pub fn sealed_body(body: &str) -> String {
     format!("{body}{MARK}{}\"}}\n", hash(body))
 }
 
@@ -22,7 +22,7 @@ pub(crate) fn sealed_body(body: &str) -> String {
 ///
 /// # Errors
 /// The seal is not the last member, or does not hold.
-pub(crate) fn body(text: &str) -> Result<&str, String> {
+pub fn body(text: &str) -> Result<&str, String> {
     let (body, tail) = text.rsplit_once(MARK).ok_or("sha256: missing, or not the last member")?;
     let said = tail.trim_end().strip_suffix("\"}").ok_or("sha256: not the last member")?;
     if said == hash(body) { Ok(body) } else { Err("sha256: the file is not as it was written".to_owned()) }

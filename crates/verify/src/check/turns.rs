@@ -18,6 +18,7 @@ use crate::stop::{Stop, Stopped};
 use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
 use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
@@ -65,7 +66,7 @@ impl TurnsClaim<'_> {
         let mut report = SetReport::default();
         for batch in rows.chunks(BATCH) {
             let lines = self.lines(batch, &stroke_of);
-            let check = |row: &&TurnRow| stop.check().map(|()| self.row(&chain, row, &stroke_of, &lines));
+            let check = |row: &&TurnRow| stop.check().map(|()| self.in_time(&chain, row, &stroke_of, &lines));
             let checked: Vec<(Outcome, f64)> = batch.par_iter().map(check).collect::<Result<_, _>>()?;
             for (row, (outcome, km)) in batch.iter().zip(checked) {
                 report.swept_km += km;
@@ -130,6 +131,14 @@ impl TurnsClaim<'_> {
             let legal = || edge.and_then(|edge| self.network.legal(edge).forbids(self.vehicle));
             if known.bars_passage() { known } else { legal().unwrap_or(known) }
         })
+    }
+
+    /// The outcome of a row, which is not confirmed if that takes too long, and the kilometres that were swept for it.
+    fn in_time(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
+        let (number, of) = (u64::from(row.turn) + 1, self.facts.len() as u64);
+        let work = Work { what: "turn", number, of, edge: Some(row.from_edge) };
+        let checked = watch::guarded(work, watch::patience(), || self.row(chain, row, stroke_of, lines));
+        checked.unwrap_or_else(|TookTooLong| (rules::took_too_long(), 0.0))
     }
 
     /// The outcome of a row, and the kilometres that were swept for it.

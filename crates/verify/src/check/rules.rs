@@ -1,7 +1,15 @@
 //! Rules of what a certificate may claim. They hold in files and in databases alike.
 
 use crate::vehicle::Vehicle;
-use netcert_check::plan;
+use crate::watch;
+use netcert_check::{Outcome, finding, plan};
+
+/// The outcome of a claim whose check used up the program's patience.
+pub(super) fn took_too_long() -> Outcome {
+    let seconds = watch::patience().end_after.as_secs();
+    let told = format!("the check took longer than {seconds} s and was ended; `--patience SECONDS` gives it more time");
+    Outcome::NotConfirmed(vec![finding("work", &told)])
+}
 
 /// Checks that a shrink (γ) is one that the vehicle allows. Databases and files round it to thousandths.
 pub(super) fn shrink(vehicle: &Vehicle, shrink: f64) -> Result<(), String> {

@@ -45,8 +45,8 @@ fn malformed(detail: String) -> Complaint {
 /// The hash of a source, as databases keep it.
 fn hash_of(source: &Path) -> Result<String, VerifyError> {
     #[cfg(feature = "overture")]
-    if crate::overture::is_source(source) {
-        return Ok(crate::overture::hash(&[source])?);
+    if netcert_overture::is_source(source) {
+        return Ok(netcert_overture::hash(&[source])?);
     }
     let unreadable = |error| VerifyError::Source { path: source.to_owned(), error };
     let mut hasher = blake3::Hasher::new();

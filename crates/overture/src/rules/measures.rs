@@ -3,7 +3,7 @@
 use std::num::NonZeroU8;
 
 use super::{Limit, LimitKind};
-use crate::overture::record::{Comparison, Speed};
+use crate::record::{Comparison, Speed};
 
 /// Metres of a length's unit.
 fn metres(unit: &str) -> Option<f64> {

@@ -2,6 +2,16 @@
 //!
 //! [`crate::check`] decides. This module reads what it is told of, and neither uses the prover.
 
+use netcert_base::{stop, vehicle, verdict, watch, words};
+use netcert_evidence as evidence;
+use netcert_files::seal;
+use netcert_osm::{account, osm};
+use netcert_roads::{corridor, network, turns};
+use netcert_rows as rows;
+use netcert_rows::settings;
+use netcert_store as store;
+
+pub mod check;
 mod displayed;
 mod error;
 mod records;
@@ -10,7 +20,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::check::{Finding, Outcome, SetClaim, SetReport, TurnsClaim};
-use crate::evidence::{self, Entry};
+use crate::evidence::Entry;
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, EdgeRow, TurnRow};

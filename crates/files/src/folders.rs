@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 ///
 /// # Errors
 /// A folder cannot be read; its path.
-pub(crate) fn files_below(folder: &Path, passes: &dyn Fn(&str) -> bool) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
+pub fn files_below(folder: &Path, passes: &dyn Fn(&str) -> bool) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
     let (mut files, mut read) = (Vec::new(), FxHashSet::default());
     walk(folder, passes, &mut files, &mut read)?;
     files.sort();

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::overture::record::Segment;
+use crate::record::Segment;
 use crate::vehicle::{Catalogue, Vehicle};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
