@@ -84,37 +84,33 @@
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 
 pub use netcert_base::{speed_profile, stop, vehicle, verdict, watch, words};
+pub use netcert_certify as certify;
+pub use netcert_certify::reporter;
 pub use netcert_evidence as evidence;
+pub use netcert_explain as explain;
+pub use netcert_explain::{diff, manoeuvres};
+#[cfg(feature = "export")]
+pub use netcert_export as export;
+#[cfg(feature = "export")]
+pub use netcert_export::cluster;
 pub use netcert_files::seal;
 pub use netcert_kernel::{published, stet};
 pub use netcert_osm::{account, osm};
 #[cfg(feature = "overture")]
 pub use netcert_overture as overture;
+pub use netcert_picture as picture;
+pub use netcert_pipeline as pipeline;
+pub use netcert_pipeline::program;
 pub use netcert_roads::{corridor, network, turns};
+pub use netcert_route as route;
 pub use netcert_rows as rows;
 pub use netcert_rows::settings;
+#[cfg(feature = "serve")]
+pub use netcert_serve as serve;
 pub use netcert_store as store;
 pub use netcert_verify as verify;
 pub use netcert_verify::check;
 
-#[cfg(feature = "export")]
-use netcert_files::{folders, output_lock, scratch, sorter};
-
 pub mod certificate;
-pub mod certify;
-#[cfg(feature = "export")]
-pub mod cluster;
-pub mod diff;
-pub mod explain;
-#[cfg(feature = "export")]
-pub mod export;
-pub mod manoeuvres;
-pub mod picture;
-pub mod pipeline;
-pub mod program;
 pub mod region;
-pub mod reporter;
-pub mod route;
-#[cfg(feature = "serve")]
-pub mod serve;
 pub mod sign;

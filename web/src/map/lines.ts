@@ -18,7 +18,7 @@ export interface Ground {
   latitude: number;
 }
 
-/** From this zoom on, tiles have each road by itself (`src/serve/tiles/mod.rs`). */
+/** From this zoom on, tiles have each road by itself (`crates/serve/src/tiles/mod.rs`). */
 export const EDGE_ZOOM = 11;
 
 export const major = ["motorway", "trunk"];

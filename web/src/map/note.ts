@@ -5,7 +5,7 @@ import { h } from "../ui/dom.ts";
 import { regionName } from "../words.ts";
 import type { View } from "./view.ts";
 
-/** From this zoom on, every road is drawn (`src/serve/tiles/classes.rs`). */
+/** From this zoom on, every road is drawn (`crates/serve/src/tiles/classes.rs`). */
 const ALL_ZOOM = 13;
 /** A region that is smaller on the screen is a speck, pixels. */
 const SPECK_PX = 60;

@@ -1,0 +1,29 @@
+//! Certificates of a whole network: of its edges, stroke by stroke, and of the turns between them.
+
+use netcert_base::{stop, verdict, watch, words};
+use netcert_kernel::stet;
+use netcert_osm::{account, osm};
+use netcert_roads::{corridor, network};
+use netcert_rows as rows;
+use netcert_rows::settings;
+
+mod job;
+mod least;
+mod narrower;
+mod needs;
+mod paths;
+pub mod reporter;
+mod strokes;
+mod suppose;
+mod touched;
+mod turns;
+
+pub use job::Job;
+pub use least::{least_of, least_that_does};
+pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, flares};
+pub use paths::{best_of, fits};
+pub use strokes::verdict;
+pub use strokes::{Outcome, by_cell, certify_network, certify_strokes, make_strokes};
+pub use suppose::{stroke_at_least, turn_with_kerb};
+pub use touched::{NearNodes, Touched};
+pub use turns::{TurnJob, TurnOutcome, certify_some_turns, certify_turns, make_turns, turn_verdict};

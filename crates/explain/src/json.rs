@@ -1,0 +1,114 @@
+//! Writes an explanation as JSON for pages and programs. Names of members say their units: metres or degrees. Positions are in
+//! the corridor's own metric frame.
+
+use serde_json::{Value, json};
+
+use super::words::words;
+use super::{Explanation, Geometry, KerbHint, Part, ShorterHint};
+use crate::osm::facts::WidthSource;
+use crate::vehicle::Vehicle;
+use netcert_base::words::{Named as _, verdict_words};
+
+/// The whole explanation without the corridor's stations.
+#[must_use]
+pub fn json(e: &Explanation) -> Value {
+    let (verdict, reason) = verdict_words(e.verdict);
+    let words = words(e);
+    let road = e.road.as_ref().map(|road| {
+        json!({
+            // The id is text, because it has 63 bits and JavaScript's numbers hold 53.
+            "edge_id": road.edge_id.to_string(),
+            "way_id": road.way_id,
+            "from_node": road.from_node,
+            "to_node": road.to_node,
+            "direction": road.direction.name(),
+            "highway": road.highway,
+            "name": road.name,
+            "ref": road.reference,
+            "title": road.title,
+            "corridor": road.policy.name(),
+            "width_source": road.width_source.map(WidthSource::name),
+            "width_tags": road.width_tags,
+            "narrowed_by": road.narrowed_by,
+            "lane_shared": road.lane_shared,
+        })
+    });
+    let conflict = e.conflict.as_ref().map(
+        |c| json!({"tag": c.tag, "allowed": c.allowed, "vehicle_has": c.has, "unit": c.unit, "surveyed": c.surveyed}),
+    );
+    json!({
+        "vehicle": e.vehicle.id,
+        "road": road,
+        "verdict": verdict,
+        "reason": Some(reason).filter(|reason| !reason.is_empty()),
+        "headline": words.headline,
+        "reasons": words.reasons,
+        "hints_in_words": words.hints,
+        "scope": words.scope,
+        "limiting": e.geometry.as_ref().map(|g| limiting(g, &e.vehicle)),
+        "hints": hints(e),
+        "conflict": conflict,
+    })
+}
+
+fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
+    let (place, hinge, result) = (&g.place, &g.hinge, &g.result);
+    let (part, ahead_m) = body_part(place.part);
+    json!({
+        "length_m": g.length_m(),
+        "rsc_m": result.rsc_m,
+        "shrink": result.shrink,
+        "tracking_tolerance_m": result.shrink * vehicle.tracking_tolerance_m,
+        "place": {
+            "s_m": g.along_m(place.station),
+            "unit": place.unit,
+            "unit_name": vehicle.units.get(place.unit).map(|u| &u.name),
+            "side": place.side.name(),
+            "part": part,
+            "ahead_of_axle_m": ahead_m,
+            "nominal_gap_m": place.nominal_m,
+            "error_bounds_m": place.bounds_m,
+            "width_m": place.width_m,
+            "bend": place.bend.map(|bend| json!({"radius_m": bend.radius_m, "to": bend.to.name()})),
+            "corner": place.corner,
+            "edge": place.edge,
+            "units": place.poses.iter().map(|pose| json!({"axle": pose.axle, "heading": pose.heading})).collect::<Vec<_>>(),
+        },
+        "hinge": {
+            "s_m": g.along_m(hinge.station),
+            "unit": hinge.unit,
+            "angle_deg": hinge.angle_rad.to_degrees(),
+            "limit_deg": hinge.limit_rad.to_degrees(),
+            "margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
+        },
+    })
+}
+
+/// The name of a part of a body, and its distance ahead of the axle, metres.
+pub(super) fn body_part(part: Part) -> (&'static str, Option<f64>) {
+    match part {
+        Part::FrontCorner => ("front_corner", None),
+        Part::RearCorner => ("rear_corner", None),
+        Part::Axle => ("axle", Some(0.0)),
+        Part::Side(m) => ("side", Some(m)),
+    }
+}
+
+fn hints(e: &Explanation) -> Value {
+    let strip = |other: &super::OtherStrip| json!({"corridor": other.policy.name(), "width_m": other.width_m, "safe": other.safe, "rsc_m": other.rsc_m});
+    json!({
+        "width_m": e.hints.width.map(|hint| hint.width_m),
+        "width_shrink": e.hints.width.map(|hint| hint.shrink),
+        "tracking_tolerance_m": e.hints.tolerance_m,
+        "hinge_limit_deg": e.hints.hinge_limit_deg,
+        "kerb_radius_m": match e.hints.kerb {
+            Some(KerbHint::AtLeast(radius_m)) => Some(radius_m),
+            _ => None,
+        },
+        "shorter_vehicle": match &e.hints.shorter {
+            Some(ShorterHint::Does(id, length_m)) => Some(json!({"id": id, "length_m": length_m})),
+            _ => None,
+        },
+        "other_strips": e.hints.other_strips.iter().map(strip).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,245 @@
+//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>), one file per layer: lines as WKB, a column of boxes with which
+//! readers can skip rows, and the header as JSON under the key `netcert` of the file's metadata.
+//!
+//! Memory holds one group of rows at a time.
+
+mod metadata;
+
+use std::io::Write as _;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::Type;
+
+use super::layers::{Row, asked};
+use super::{Options, Target, one_file_a_layer};
+use crate::osm::LonLat;
+use crate::rows::{self, Bounds, Cell, Kind};
+use crate::{ExportError, Layout, Place, Sink, Source};
+
+/// `geoparquet`
+pub(super) struct GeoParquet;
+
+/// Rows per group. A group of edges takes some 8 MB.
+const GROUP_ROWS: usize = 1 << 14;
+
+/// The sides of the box, in the order of its columns.
+const SIDES: [&str; 4] = ["xmin", "ymin", "xmax", "ymax"];
+
+impl Target for GeoParquet {
+    fn name(&self) -> &'static str {
+        "geoparquet"
+    }
+
+    fn about(&self) -> &'static str {
+        "edges and turns with all certificate columns, as GeoParquet 1.1"
+    }
+
+    fn layout(&self, options: &Options) -> Layout {
+        one_file_a_layer(self.name(), options)
+    }
+
+    fn has_columns(&self) -> bool {
+        true
+    }
+
+    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
+        for layer in asked(options) {
+            let columns = layer.columns(source);
+            let sink = place.create(&format!("{}.parquet", layer.name()))?;
+            let mut file = Table::create(schema(layer.name(), &columns).map_err(failed)?, &columns, sink)?;
+            layer.each(source, |row| file.push(row))?;
+            file.close(&columns, &source.header.json().to_string())?;
+        }
+        Ok(())
+    }
+}
+
+/// A file that is being written.
+struct Table {
+    writer: SerializedFileWriter<Vec<u8>>,
+    sink: Sink,
+    group: Vec<Column>,
+    lines: Vec<ByteArray>,
+    boxes: [Vec<f64>; SIDES.len()],
+    bounds: Option<Bounds>,
+}
+
+impl Table {
+    fn create(schema: Type, columns: &[rows::Column], sink: Sink) -> Result<Self, ExportError> {
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())
+            .build();
+        let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties));
+        let group = columns.iter().map(|column| Column::of(column.1)).collect();
+        let (lines, boxes) = (Vec::new(), Default::default());
+        Ok(Self { writer: writer.map_err(failed)?, sink, group, lines, boxes, bounds: None })
+    }
+
+    fn push(&mut self, row: &Row<'_>) -> Result<(), ExportError> {
+        self.group.iter_mut().zip(row.cells).for_each(|(column, cell)| column.push(cell));
+        self.lines.push(wkb(row.line).into());
+        if let Some(around) = Bounds::around(row.line.iter().copied()) {
+            let sides = [around.west, around.south, around.east, around.north];
+            self.boxes.iter_mut().zip(sides).for_each(|(column, side)| column.push(side));
+            self.bounds = Some(self.bounds.map_or(around, |bounds| bounds.union(around)));
+        }
+        if self.lines.len() >= GROUP_ROWS { self.end_group() } else { Ok(()) }
+    }
+
+    fn end_group(&mut self) -> Result<(), ExportError> {
+        self.write_group().map_err(failed)?;
+        self.writer.flush()?;
+        // The writer keeps its own count of written bytes, so its buffer can be moved to the file.
+        self.sink.write_all(self.writer.inner())?;
+        self.writer.inner_mut().clear();
+        Ok(())
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        for column in &mut self.group {
+            let Some(mut writer) = group.next_column()? else { continue };
+            column.write(&mut writer)?;
+            writer.close()?;
+        }
+        if let Some(mut writer) = group.next_column()? {
+            writer.typed::<ByteArrayType>().write_batch(&self.lines, None, None)?;
+            writer.close()?;
+            self.lines.clear();
+        }
+        for side in &mut self.boxes {
+            let Some(mut writer) = group.next_column()? else { continue };
+            writer.typed::<DoubleType>().write_batch(side, None, None)?;
+            writer.close()?;
+            side.clear();
+        }
+        group.close()?;
+        Ok(())
+    }
+
+    fn close(mut self, columns: &[rows::Column], header: &str) -> Result<(), ExportError> {
+        if !self.lines.is_empty() {
+            self.end_group()?;
+        }
+        let pandas = metadata::pandas(columns);
+        for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header.to_owned()), ("pandas", pandas)] {
+            self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
+        }
+        self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
+        self.sink.close()
+    }
+}
+
+/// The values of one column in a group.
+enum Column {
+    Integer(Vec<i64>, Vec<i16>),
+    Real(Vec<f64>, Vec<i16>),
+    Text(Vec<ByteArray>, Vec<i16>),
+    Flag(Vec<bool>),
+}
+
+impl Column {
+    fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Integer => Self::Integer(Vec::new(), Vec::new()),
+            Kind::Real => Self::Real(Vec::new(), Vec::new()),
+            Kind::Text => Self::Text(Vec::new(), Vec::new()),
+            Kind::Flag => Self::Flag(Vec::new()),
+        }
+    }
+
+    fn push(&mut self, cell: &Cell<'_>) {
+        // A definition level of 0 means that there is no value.
+        match (self, cell) {
+            (Self::Integer(values, levels), Cell::Integer(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value);
+            }
+            (Self::Real(values, levels), Cell::Real(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value);
+            }
+            (Self::Text(values, levels), Cell::Text(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value.map(ByteArray::from));
+            }
+            (Self::Flag(values), Cell::Flag(value)) => values.push(*value),
+            // Cells have the kinds of their columns. A cell of another kind would give no value.
+            (Self::Integer(_, levels) | Self::Real(_, levels) | Self::Text(_, levels), _) => levels.push(0),
+            (Self::Flag(values), _) => values.push(false),
+        }
+    }
+
+    fn write(&mut self, writer: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
+        match self {
+            Self::Integer(values, levels) => {
+                writer.typed::<Int64Type>().write_batch(values, Some(levels), None)?;
+                values.clear();
+                levels.clear();
+            }
+            Self::Real(values, levels) => {
+                writer.typed::<DoubleType>().write_batch(values, Some(levels), None)?;
+                values.clear();
+                levels.clear();
+            }
+            Self::Text(values, levels) => {
+                writer.typed::<ByteArrayType>().write_batch(values, Some(levels), None)?;
+                values.clear();
+                levels.clear();
+            }
+            Self::Flag(values) => {
+                writer.typed::<BoolType>().write_batch(values, None, None)?;
+                values.clear();
+            }
+        }
+        Ok(())
+    }
+}
+
+fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
+    let column = |name: &str, physical, repetition, logical| {
+        let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
+        Ok::<_, ParquetError>(Arc::new(column.with_logical_type(logical).build()?))
+    };
+    let mut fields = Vec::new();
+    for &(column_name, kind) in columns {
+        let (physical, repetition, logical) = match kind {
+            Kind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
+            Kind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
+            Kind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
+            Kind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
+        };
+        fields.push(column(column_name, physical, repetition, logical)?);
+    }
+    fields.push(column("geometry", Physical::BYTE_ARRAY, Repetition::REQUIRED, None)?);
+    let sides = SIDES.map(|side| column(side, Physical::DOUBLE, Repetition::REQUIRED, None));
+    let sides = sides.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
+    fields.push(Arc::new(around));
+    Type::group_type_builder(name).with_fields(fields).build()
+}
+
+/// A line string as well-known binary (ISO 19125), little endian.
+fn wkb(line: &[LonLat]) -> Vec<u8> {
+    const LINE_STRING: u32 = 2;
+    let mut out = Vec::with_capacity(9 + 16 * line.len());
+    out.push(1);
+    out.extend(LINE_STRING.to_le_bytes());
+    out.extend((line.len() as u32).to_le_bytes());
+    for (lon, lat) in line.iter().map(|place| place.degrees()) {
+        out.extend(lon.to_le_bytes());
+        out.extend(lat.to_le_bytes());
+    }
+    out
+}
+
+fn failed(error: ParquetError) -> ExportError {
+    std::io::Error::other(error).into()
+}

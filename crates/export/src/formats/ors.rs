@@ -1,0 +1,69 @@
+//! For openrouteservice: the refused roads as areas to avoid, and as features that its matching turns into edges.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `avoid_polygons.json` | `options.avoid_polygons` of a request; any instance takes it |
+//! | `match.json` | the body of a request to `/v2/match/PROFILE`: openrouteservice answers with the numbers of its edges |
+//! | `feature_map.jq` | turns that answer into rows of the table `feature_map`, which an instance with dynamic data reads |
+//!
+//! Only openrouteservice's own graph has the numbers of its edges, so these rows cannot be written here. Turns cannot be
+//! expressed.
+
+use std::io::Write as _;
+
+use super::closures::{self, polygon};
+use super::{Options, Target};
+use crate::{ExportError, Layout, Place, Source};
+
+/// `ors`
+pub(super) struct Ors;
+
+/// A jq program for the columns of the table that openrouteservice's `DynamicDataService` reads (its repository at 7719b0c1).
+const FEATURE_MAP: &str = r#"# Rows of the table feature_map from the answer of openrouteservice's matching:
+#   jq -r --arg profile driving-hgv -f feature_map.jq answer.json > feature_map.csv
+#   \copy feature_map (dataset_key, profile, graph_timestamp, timestamp, edge_id, value, deleted) from feature_map.csv csv
+# `logie_roads` and its value RESTRICTED are one of the data sets that openrouteservice knows by name.
+.graph_timestamp as $graph
+| .edge_ids | sort | .[]
+| ["logie_roads", $profile, $graph, (now | todate), ., "RESTRICTED", false]
+| @csv
+"#;
+
+impl Target for Ors {
+    fn name(&self) -> &'static str {
+        "ors"
+    }
+
+    fn about(&self) -> &'static str {
+        "openrouteservice: areas to avoid, and input for its dynamic data"
+    }
+
+    fn layout(&self, _: &Options) -> Layout {
+        Layout::Folder { target: self.name(), instead: "" }
+    }
+
+    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
+        let mut avoid = place.create("avoid_polygons.json")?;
+        let mut features = place.create("match.json")?;
+        avoid.write_all(b"{\"type\":\"MultiPolygon\",\"coordinates\":[")?;
+        features.write_all(b"{\"key\":\"netcert\",\"features\":{\"type\":\"FeatureCollection\",\"features\":[")?;
+        let mut between = "\n";
+        let closed = closures::each(source, |ring| {
+            avoid.write_all(between.as_bytes())?;
+            polygon(&mut avoid, ring)?;
+            write!(features, "{between}{{\"type\":\"Feature\",\"properties\":{{\"type\":\"refused\"}},\"geometry\":")?;
+            features.write_all(b"{\"type\":\"Polygon\",\"coordinates\":")?;
+            polygon(&mut features, ring)?;
+            features.write_all(b"}}")?;
+            between = ",\n";
+            Ok(())
+        })?;
+        avoid.write_all(b"\n]}\n")?;
+        features.write_all(b"\n]}}\n")?;
+        avoid.close()?;
+        features.close()?;
+        place.write_whole("feature_map.jq", FEATURE_MAP.as_bytes())?;
+        source.reporter.note(&closed.note());
+        Ok(())
+    }
+}

@@ -1,0 +1,212 @@
+//! Overture's transportation schema (<https://docs.overturemaps.org/schema/reference/transportation/segment/>): a segment for each
+//! way, with connectors at its junctions, `access_restrictions` on the stretches that the vehicle may not use and
+//! `prohibited_transitions` for the turns that it may not make.
+//!
+//! Every rule about permits applies to lorries at least as long as the vehicle and says nothing about shorter ones. One-way roads, speed
+//! limits and mapped widths (`values`) are those of the map. Ids are those of
+//! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; facts of other ways are in a temporary file.
+//!
+//! What the schema cannot express is refused: an edge that is not permitted by itself stays denied even to a permitted passage
+//! over it.
+
+mod segment;
+mod spots;
+mod values;
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use serde_json::json;
+
+use super::{Options, Target};
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::sorter::{Sorted, Sorter};
+use crate::vehicle::Vehicle;
+use crate::{ExportError, Layout, Place, Sink, Source};
+use segment::{Piece, Segment};
+use spots::{Spot, Spots};
+
+/// `overture`
+pub(super) struct Overture;
+
+impl Target for Overture {
+    fn name(&self) -> &'static str {
+        "overture"
+    }
+
+    fn about(&self) -> &'static str {
+        "Overture's transportation schema: segments with access restrictions, connectors"
+    }
+
+    fn layout(&self, _: &Options) -> Layout {
+        Layout::Folder { target: self.name(), instead: "" }
+    }
+
+    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
+        let mut spots = Spots::create(source, place.scratch(".spots")?)?;
+        let mut transitions = Transitions::collect(source, place)?;
+        let mut connectors = Sorter::new(place.scratch(".connectors")?);
+        let mut sink = begin(source, place.create("segment.geojson")?)?;
+        let mut writer = Writer {
+            scope: segment::Scope { length_m: length_m(source)? },
+            spots: &mut spots,
+            transitions: &mut transitions,
+            connectors: &mut connectors,
+            source,
+            sink: &mut sink,
+            written: 0,
+        };
+        writer.segments()?;
+        end(sink)?;
+        write_connectors(source, connectors.sorted()?, place)
+    }
+}
+
+/// The vehicle's length, metres, which is the scope of all rules.
+fn length_m(source: &Source<'_>) -> Result<f64, ExportError> {
+    let definition = source.header.provenance.vehicle.to_string();
+    let vehicle = Vehicle::from_json(&definition)
+        .map_err(|e| ExportError::Content { path: source.ask.db.clone(), detail: e.to_string() })?;
+    Ok(vehicle.length_m)
+}
+
+fn begin(source: &Source<'_>, mut sink: Sink) -> Result<Sink, ExportError> {
+    write!(sink, "{{\"type\":\"FeatureCollection\",\"netcert\":{},\"features\":[", source.header.json())?;
+    Ok(sink)
+}
+
+fn end(mut sink: Sink) -> Result<(), ExportError> {
+    sink.write_all(b"\n]}\n")?;
+    sink.close()
+}
+
+fn write_connectors(source: &Source<'_>, nodes: Sorted<i64, LonLat>, place: &mut Place) -> Result<(), ExportError> {
+    let mut sink = begin(source, place.create("connector.geojson")?)?;
+    let mut last = None;
+    for row in nodes {
+        let (node, at) = row?;
+        if last == Some(node) {
+            continue;
+        }
+        let between = if last.is_none() { "\n" } else { ",\n" };
+        last = Some(node);
+        let (lon, lat) = at.degrees();
+        let feature = json!({
+            "type": "Feature",
+            "id": segment::connector_id(node),
+            "geometry": {"type": "Point", "coordinates": [lon, lat]},
+            "properties": {"theme": "transportation", "type": "connector", "version": 0},
+        });
+        write!(sink, "{between}{feature}")?;
+    }
+    end(sink)
+}
+
+/// The transitions that are prohibited, by the first edge.
+struct Transitions {
+    /// The edges of refused turns: from and to, both permitted.
+    turns: std::iter::Peekable<Sorted<(u32, u32), ()>>,
+    /// The sequences of [`Source::sequences`], by their first edge. They are few.
+    sequences: BTreeMap<u32, Vec<Vec<u32>>>,
+}
+
+impl Transitions {
+    fn collect(source: &Source<'_>, place: &Place) -> Result<Self, ExportError> {
+        let mut database = source.database()?;
+        let mut turns = Sorter::new(place.scratch(".turns")?);
+        for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
+            let step = step?;
+            if source.refuses_turn(&step) {
+                turns.push((step.from, step.to), &())?;
+            }
+        }
+        let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        for mut sequence in source.sequences()? {
+            let first = sequence.remove(0);
+            sequences.entry(first).or_default().push(sequence);
+        }
+        Ok(Self { turns: turns.sorted()?.peekable(), sequences })
+    }
+
+    /// The prohibited sequences after an edge, each without that edge. Edges must come in order.
+    fn of(&mut self, edge: u32) -> Result<Vec<Vec<u32>>, ExportError> {
+        let mut out = Vec::new();
+        let reached =
+            |next: &std::io::Result<((u32, u32), ())>| next.as_ref().map_or(true, |((from, _), ())| *from <= edge);
+        while let Some(row) = self.turns.next_if(reached) {
+            let ((from, to), ()) = row?;
+            if from == edge {
+                out.push(vec![to]);
+            }
+        }
+        out.extend(self.sequences.remove(&edge).unwrap_or_default());
+        Ok(out)
+    }
+}
+
+struct Writer<'w, 'r> {
+    scope: segment::Scope,
+    spots: &'w mut Spots,
+    transitions: &'w mut Transitions,
+    connectors: &'w mut Sorter<i64, LonLat>,
+    source: &'w Source<'r>,
+    sink: &'w mut Sink,
+    written: u64,
+}
+
+impl Writer<'_, '_> {
+    fn segments(&mut self) -> Result<(), ExportError> {
+        let source = self.source;
+        let mut database = source.database()?;
+        let mut open: Option<Segment> = None;
+        for edge in source.edges(&mut database)? {
+            let edge = edge?;
+            let spot = self.spots.get(edge.row.edge)?;
+            let same = open.as_ref().is_some_and(|open| (open.way_id, open.chain) == (spot.way_id, spot.chain));
+            if !same && let Some(done) = open.take() {
+                self.write(&done)?;
+            }
+            let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &spot));
+            if segment.pieces.last().is_none_or(|piece| piece.shape_start != spot.shape_start) {
+                segment.pieces.push(Piece::new(&edge.row, &spot));
+            }
+            if let Some(piece) = segment.pieces.last_mut() {
+                piece.values.take(&edge.row, spot.heading, source.ask.policy == Policy::Carriageway);
+            }
+            if edge.refusal.is_none() {
+                let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;
+                if let Some(piece) = segment.pieces.last_mut() {
+                    piece.permitted[spot.heading as usize] = Some(forbidden);
+                }
+            }
+        }
+        open.map_or(Ok(()), |done| self.write(&done))
+    }
+
+    /// The prohibited sequences after a permitted edge that ends at the node `end`.
+    fn forbidden(&mut self, edge: u32, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
+        let mut out = Vec::new();
+        for sequence in self.transitions.of(edge)? {
+            let mut via = end;
+            let mut steps = Vec::with_capacity(sequence.len());
+            for to in sequence {
+                let Spot { way_id, chain, heading, end, .. } = self.spots.get(to)?;
+                steps.push((via, segment::id(way_id, chain), heading));
+                via = end;
+            }
+            out.push(segment::Forbidden { steps });
+        }
+        Ok(out)
+    }
+
+    fn write(&mut self, segment: &Segment) -> Result<(), ExportError> {
+        for (node, at) in segment.nodes() {
+            self.connectors.push(node, &at)?;
+        }
+        let between = if self.written == 0 { "\n" } else { ",\n" };
+        self.written += 1;
+        write!(self.sink, "{between}{}", segment.feature(&self.scope))?;
+        Ok(())
+    }
+}

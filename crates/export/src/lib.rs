@@ -1,0 +1,82 @@
+//! Writes the roads and turns that a vehicle may use in the formats of routing engines and map programs.
+//!
+//! - All targets share one rule of what is permitted ([`PermitPolicy`]), the rule of `netcert route`. What is not certified is
+//!   refused.
+//! - A header in or beside every output says what the permits depend on ([`Header`]).
+//! - Rows are streamed in order of the network, and the same input gives the same bytes.
+//! - An output is complete or absent ([`Place`]).
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `permit` | the rule, and the edges and turns that it permits |
+//! | `header` | the header of every output |
+//! | `measurements` | the measurements behind the permits, for the header |
+//! | `source` | rows from the database, each with its permit |
+//! | `rings` | the edges that a passage leads over |
+//! | `corners` | edges before a refused corner of a road |
+//! | `sequences` | sequences of permitted edges that may not be driven |
+//! | `ways` | the extract's ways beside the network's edges |
+//! | `destination` | the output: a file, a folder or a stream |
+//! | `unfinished` | what to remove if the program is stopped |
+//! | `formats` | one file or folder for each target |
+//!
+//! An export does not certify whole routes. An engine joins edges and turns that are each safe by themselves; only `netcert
+//! route` certifies the whole.
+
+use netcert_base::{vehicle, verdict, words};
+use netcert_certify::reporter;
+use netcert_evidence as evidence;
+use netcert_files::{folders, output_lock, scratch, sorter};
+use netcert_osm::osm;
+use netcert_pipeline as pipeline;
+use netcert_route as route;
+use netcert_rows as rows;
+use netcert_store as store;
+
+mod ask;
+pub mod cluster;
+mod corners;
+mod destination;
+mod error;
+pub mod formats;
+mod header;
+mod measurements;
+mod permit;
+mod sequences;
+mod source;
+mod unfinished;
+mod ways;
+
+pub use ask::Ask;
+pub use destination::{Layout, Out, Place, Sink};
+pub use error::ExportError;
+pub use formats::Target;
+pub use header::{Header, Provenance};
+pub use measurements::{MeasuredBy, Measurements};
+pub use permit::{Bits, PermitPolicy, Permitted, Refusal, Tally};
+pub use source::{ExportEdge, ExportTurn, Source};
+pub use unfinished::Unfinished;
+
+/// Writes one export from beginning to end.
+///
+/// # Errors
+/// The database or extract cannot be read, or the output cannot be written. Nothing of the output is left then.
+pub fn export(
+    source: &Source<'_>,
+    target: &dyn Target,
+    options: &formats::Options,
+    (out, unfinished): (Out, Unfinished),
+) -> Result<(), ExportError> {
+    formats::check_reference(target, source.ask.relative_to.as_deref())?;
+    let mut place = Place::begin(out, target.layout(options), unfinished)?;
+    let written = target.write(source, options, &mut place).and_then(|()| {
+        if place.is_folder() {
+            place.write_whole("netcert.json", format!("{:#}\n", source.header.json()).as_bytes())?;
+        }
+        Ok(())
+    });
+    match written {
+        Ok(()) => place.finish(),
+        Err(error) => Err(place.name(error)),
+    }
+}

@@ -1,0 +1,83 @@
+//! Fewer and smaller conditions: what a section can do without is taken back.
+
+use super::fit::{Fitter, Fitting};
+use super::suppositions::Suppositions;
+use super::{Condition, ConditionAt};
+use crate::graph::Access;
+use crate::stop::{Stop, Stopped};
+
+/// How often at most something is taken back from a section.
+const TRIES: usize = 20;
+
+impl Fitter {
+    /// Makes the conditions of a safe section fewer and smaller while it stays safe: roads first.
+    pub(super) fn lessen(&mut self, fitting: &mut Fitting, access: &Access, stop: &Stop) -> Result<(), Stopped> {
+        self.level(fitting, stop)?;
+        let mut conditions = self.conditions(fitting);
+        // An edge with a price is not safe without its width.
+        let priced = |edge: &u32| access.edges.get(*edge as usize).is_some_and(|&price| price > 0);
+        let own = |condition: &Condition| matches!(&condition.at, ConditionAt::Road(edges) if edges.iter().any(priced));
+        let beside = |condition: &&Condition| matches!(condition.at, ConditionAt::Road(_)) && !own(condition);
+        if conditions.iter().filter(beside).count() > 1 {
+            let none = conditions.iter().filter(beside);
+            let none = none.fold(fitting.supposed.clone(), |less, condition| less.with_only(condition, 0.0));
+            if self.still_safe(fitting, none, stop)? {
+                conditions = self.conditions(fitting);
+            }
+        }
+        conditions.sort_by_key(|condition| match condition.at {
+            ConditionAt::Road(_) => 0,
+            ConditionAt::Junction(_) => 1,
+            ConditionAt::Corner { .. } => 2,
+        });
+        let mut left = TRIES;
+        for condition in conditions {
+            // First the condition is left out, then the values between are halved.
+            let less: Vec<Suppositions> =
+                fitting.supposed.less(&condition).skip(usize::from(own(&condition))).collect();
+            let (mut low, mut high) = (0, less.len());
+            let mut at = 0;
+            while low < high && left > 0 {
+                left -= 1;
+                if self.still_safe(fitting, less[at].clone(), stop)? {
+                    high = at;
+                } else {
+                    low = at + 1;
+                }
+                at = usize::midpoint(low, high);
+            }
+        }
+        self.level(fitting, stop)
+    }
+
+    /// Makes one condition of several along a road.
+    fn level(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<(), Stopped> {
+        let mut level = fitting.supposed.clone();
+        level.level_roads(&self.roads.network, &fitting.drive.edges);
+        if level != fitting.supposed {
+            self.still_safe(fitting, level, stop)?;
+        }
+        Ok(())
+    }
+
+    fn conditions(&self, fitting: &Fitting) -> Vec<Condition> {
+        let kerbs = &self.driver.permits.settings.kerbs;
+        fitting.supposed.conditions(&self.roads.network, kerbs, &fitting.drive.edges)
+    }
+
+    /// Supposes something else, if the section is safe with it: on the same paths, or on those that are best then.
+    fn still_safe(&mut self, fitting: &mut Fitting, other: Suppositions, stop: &Stop) -> Result<bool, Stopped> {
+        let before = std::mem::replace(&mut fitting.supposed, other);
+        let choices = fitting.choices.clone();
+        for same in [true, false] {
+            if !same {
+                fitting.choices.clear();
+            }
+            if self.look(fitting, stop)?.is_ok_and(|looked| looked.safe()) {
+                return Ok(true);
+            }
+        }
+        (fitting.supposed, fitting.choices) = (before, choices);
+        Ok(false)
+    }
+}

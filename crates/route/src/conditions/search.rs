@@ -1,0 +1,171 @@
+//! The search for the way with the fewest and smallest conditions.
+
+use rustc_hash::FxHashSet;
+
+use super::Conditional;
+use super::fit::{Fitted, Fitter, Unfit};
+use crate::assemble::{PartKind, Way};
+use crate::graph::{Access, BARRED};
+use crate::network::{Movements, Network};
+use crate::obstacles::{self, CENTIMETRE, Refutation};
+use crate::permits::Permit;
+use crate::plan::{Planner, Question, Unanswered};
+use crate::snap::Snapped;
+use crate::stop::{Stop, Stopped};
+use crate::verdict::{UnsafeReason, Verdict};
+
+/// How many ways are tried at most, if the question allows as many.
+const WAYS: usize = 20;
+/// The price of a turn by itself, and of an edge by itself and for each metre of it, in centimetres of missing room. A kilometre to
+/// measure costs as much as a turn.
+const TURN_CM: f64 = 100.0;
+const EDGE_CM: f64 = 20.0;
+const EDGE_CM_PER_M: f64 = 0.1;
+/// What a turn may lack whose certificate has no number, because the road before or after it lacks room, centimetres.
+const NO_NUMBER_CM: f64 = 50.0;
+/// What a turn may lack that a hinge or the steering lock stops, centimetres.
+const HINGE_CM: f64 = 300.0;
+/// The price of what lacks room beside a measurement is this part of the usual one.
+const MEASURED_SHARE: u64 = 100;
+/// The greatest missing width that counts, centimetres.
+const MOST_MISSING_CM: f64 = 2000.0;
+
+/// No route, not even under conditions.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Hopeless {
+    /// Places on the ways that were tried for which no width, kerb radius or paving does.
+    pub places: Vec<PartKind>,
+    /// Whether the search stopped before all ways were tried.
+    pub gave_up: bool,
+}
+
+impl Planner {
+    /// The way with the fewest and smallest conditions, certified as a whole on a network on which they hold. `refuted` are the ways
+    /// that failed as a whole without conditions.
+    ///
+    /// # Errors
+    /// A place is near no road that the vehicle may lawfully use, or `stop` was told.
+    pub fn under_conditions(
+        &mut self,
+        question: &Question,
+        refuted: &[Refutation],
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
+        self.stop = stop.clone();
+        let access = self.conditional_access(refuted);
+        let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
+        let snap = |place| self.snapper.snap(place, question.snap_m, open);
+        let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
+        let kept = self.fitter.take();
+        let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
+        let answer = self.fit(&mut fitter, question, snapped, access, stop);
+        self.fitter = Some(fitter);
+        Ok(answer?)
+    }
+
+    /// Fits one way after the other. Places for which nothing does are left out of the next one.
+    fn fit(
+        &self,
+        fitter: &mut Fitter,
+        question: &Question,
+        snapped: Vec<Snapped>,
+        mut access: Access,
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Stopped> {
+        let mut hopeless = Hopeless::default();
+        for _ in 0..WAYS.min(question.tries.max(1)) {
+            let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
+            let way = Way { drive: &found.drive, start, end };
+            match fitter.fit(&way, &access, stop)? {
+                Ok(Fitted { drive, certified, supposed, suffices }) => {
+                    found.drive = drive;
+                    let kerbs = &self.driver.permits.settings.kerbs;
+                    let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
+                    let route = self.route(&found, (start, end), certified);
+                    return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
+                }
+                Err(Unfit(places)) => {
+                    let mut barred = false;
+                    for at in places {
+                        let slot = obstacles::slot(&mut access, self.graph.movements(), at);
+                        barred |= slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED);
+                        hopeless.places.push(at);
+                    }
+                    // If nothing can be left out, the next search would find the same way.
+                    if !barred {
+                        break;
+                    }
+                }
+            }
+        }
+        hopeless.gave_up = true;
+        Ok(Err(hopeless))
+    }
+
+    /// The access to what is safe, and at a price to what room would make safe.
+    fn conditional_access(&self, refuted: &[Refutation]) -> Access {
+        let (network, movements, permits) = (self.network(), self.graph.movements(), &self.driver.permits);
+        let mut access = permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
+        for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
+            if let Some(slot) = obstacles::slot(&mut access, movements, refutation.at).filter(|slot| **slot == 0) {
+                let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
+                *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
+            }
+        }
+        prefer_measured(network, movements, &mut access);
+        access
+    }
+}
+
+/// Makes cheap what lacks room beside a measurement: the way for which somebody measured is looked at first.
+fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access) {
+    if network.site.is_empty() {
+        return;
+    }
+    let nodes: FxHashSet<i64> = network.site.junctions().collect();
+    let measured: Vec<bool> = network
+        .edges
+        .iter()
+        .map(|edge| {
+            network.site.section(edge).is_some() || nodes.contains(&edge.from_node) || nodes.contains(&edge.to_node)
+        })
+        .collect();
+    let near = |edge: u32| measured.get(edge as usize).is_some_and(|&measured| measured);
+    let cheaper = |price: &mut u64| {
+        if *price != BARRED && *price > 0 {
+            *price = (*price / MEASURED_SHARE).max(1);
+        }
+    };
+    (0..).zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+    let turns = movements.all().iter().zip(&mut access.movements);
+    turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
+    let passages = movements.passages().iter().zip(&mut access.passages);
+    passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
+}
+
+fn price(cm: f64) -> u64 {
+    CENTIMETRE * cm.clamp(1.0, TURN_CM + MOST_MISSING_CM) as u64
+}
+
+/// The price of an edge that is not safe: a measure of what has to be measured there, and of how much is missing.
+pub(crate) fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
+    match (permit.verdict, permit.rsc_m) {
+        (Verdict::Unsafe(UnsafeReason::Width), Some(rsc_m)) if rsc_m.is_finite() => {
+            let length_m = network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
+            price(EDGE_CM + EDGE_CM_PER_M * length_m + 200.0 * (-rsc_m).max(0.0))
+        }
+        _ => BARRED,
+    }
+}
+
+/// The price of a turn or passage that is not safe.
+pub(crate) fn turn_price(permit: &Permit) -> u64 {
+    match (permit.verdict, permit.rsc_m) {
+        (Verdict::Unsafe(UnsafeReason::Width), missing) => {
+            let missing_cm = missing.filter(|rsc_m| rsc_m.is_finite()).map(|rsc_m| 100.0 * (-rsc_m).max(0.0));
+            price(TURN_CM + missing_cm.unwrap_or(NO_NUMBER_CM))
+        }
+        (Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock), _) => price(TURN_CM + HINGE_CM),
+        _ => BARRED,
+    }
+}

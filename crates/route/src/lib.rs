@@ -1,0 +1,96 @@
+//! Plans routes: the best way over edges and turns that a vehicle may use, with one certificate over the whole route.
+//!
+//! Every returned route has a `safe` certificate over its joined corridor, made by the same function as any other certificate.
+//! No route breaks a turn restriction. If there is no route, the answer names what blocks it. Turning back on the road is not
+//! planned, and traffic is ignored.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `speeds` | the cost of an edge |
+//! | `bans` | restrictions over ways, as an automaton |
+//! | `permits`, `stored` | what a vehicle may use |
+//! | `roads`, `driver` | what planners share: the roads, and a vehicle with its permits |
+//! | `graph` | edges, movements and passages as a graph |
+//! | `drive` | the edges of a way, and the arcs of passages among them |
+//! | `search` | the shortest way |
+//! | `snap` | the nearest point on a road to a place |
+//! | `pieces` | strokes and turns, the pieces of a corridor |
+//! | `turning` | turns that are made when a route needs them |
+//! | `assemble`, `blend` | one corridor from pieces |
+//! | `whole` | the certificate of a whole way, and where it fails |
+//! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
+//! | `obstacles` | what blocks a route, and on which way |
+//! | `conditions` | a route that is certified if widths and radii are as it says |
+//! | `beside` | the road beside a place, and why it may not be used |
+//! | `best` | certified routes, else one under conditions |
+//! | `report` | an answer as JSON and GeoJSON |
+//! | `relative` | an answer beside a reference vehicle |
+//! | `survey` | which measurements would open most |
+//! | `through` | roads that are open at the ends of a route only |
+//! | `reach` | what can be reached from a place, and back |
+
+use netcert_base::{stop, vehicle, verdict, words};
+use netcert_certify as certify;
+use netcert_certify::reporter;
+use netcert_evidence as evidence;
+use netcert_kernel::stet;
+use netcert_osm::osm;
+use netcert_roads::{corridor, network, turns};
+use netcert_rows as rows;
+use netcert_rows::settings;
+use netcert_store as store;
+
+mod assemble;
+mod bans;
+mod beside;
+mod best;
+mod blend;
+mod conditions;
+mod drive;
+mod driver;
+mod graph;
+mod grounds;
+mod obstacles;
+mod permits;
+mod pieces;
+mod plan;
+mod reach;
+mod relative;
+mod report;
+mod roads;
+mod search;
+mod snap;
+mod speeds;
+mod stored;
+mod survey;
+mod through;
+mod turning;
+mod whole;
+
+pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
+pub use bans::{Bans, Within};
+pub use beside::Beside;
+pub use conditions::{
+    Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson,
+};
+pub use drive::{Drive, Join};
+pub use driver::Driver;
+pub use graph::{Access, BARRED, Graph};
+pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
+pub use permits::{Permit, Permits};
+pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
+pub use plan::{Answer, Planner, Question, Route, Unanswered};
+pub use reach::{Components, Reach, components, reach, with_edge};
+pub use relative::{Comparison, Peer, Standings};
+pub use report::{
+    CONDITIONAL, LimitedStretch, PartResult, condition_members, geojson, json, obstacle_members, place, title,
+};
+pub use roads::Roads;
+pub use search::{Found, Goal, Start, search, search_over};
+pub use snap::{Position, SnapError, Snapped, Snapper, foot};
+pub use speeds::{Measure, Speeds, SpeedsError};
+pub use stored::NoDriver;
+pub use survey::{
+    Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
+};
+pub use turning::MadeTurns;

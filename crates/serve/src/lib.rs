@@ -1,0 +1,66 @@
+//! A read-only web server that shows one certified database on a map.
+//!
+//! - Every answer comes from the current state of the database file.
+//! - Every piece of work is bounded in size, time and number.
+//! - The server answers only requests that are meant for it, and only the addresses of its own tables.
+//! - Every answer that says `safe` also says the scope of `safe`.
+//! - There is no log-in and no encryption, so the server listens on loopback only, unless told otherwise.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `options` | options of the command line, and all bounds |
+//! | `run` | listening, connections, stopping |
+//! | `routes` | the endpoint of every address |
+//! | `gate` | checks of every request, security headers of every response |
+//! | `lines` | log lines for the operator of the server |
+//! | `ask` | names and parameters of a request |
+//! | `answer`, `cache` | entity tags, compression, conditional requests; the cache of answers |
+//! | `problem` | errors, as problem+json |
+//! | `app`, `work` | the state that requests share; lanes for work that blocks |
+//! | `region`, `roads` | one state of the database file; the network in memory |
+//! | `older`, `changes` | the older database beside it; what changed since then |
+//! | `planning`, `drive` | routes, and how a vehicle drives along one |
+//! | `made_once` | values that are made on first use; the last results of long work |
+//! | `search` | roads by what people type |
+//! | `tiles` | vector tiles |
+//! | `api` | all other endpoints, one file each |
+//! | `assets` | the page |
+
+use netcert_base::{speed_profile, stop, vehicle, verdict, words};
+use netcert_certify as certify;
+use netcert_explain as explain;
+use netcert_explain::diff;
+use netcert_kernel::stet;
+use netcert_osm::osm;
+use netcert_picture as picture;
+use netcert_roads::{corridor, network, turns};
+use netcert_route as route;
+use netcert_rows as rows;
+use netcert_rows::settings;
+use netcert_store as store;
+
+mod answer;
+mod api;
+mod app;
+mod ask;
+mod assets;
+mod cache;
+mod changes;
+mod drive;
+mod gate;
+mod lines;
+mod made_once;
+mod older;
+mod options;
+mod planning;
+mod problem;
+mod region;
+mod roads;
+mod routes;
+mod run;
+mod search;
+mod tiles;
+mod work;
+
+pub use options::{BaseMap, LaneLimits, Limits, Options};
+pub use run::{ServeError, Server};
