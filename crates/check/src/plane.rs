@@ -396,7 +396,15 @@ impl Swept<'_> {
             let middle = piece.middle();
             let still = self.taken(&middle).still();
             let there = room(&middle, &still, &self.corners(&middle)[..1]);
-            let bound = there.map_or(still.no_room(), |(bound, _)| bound);
+            // The least that is said of places outside, by the area that says most.
+            let beyond = |piece: &Piece, taken: &Taken, points: &[Point]| {
+                let of = |(b, near): (&&Boundary, &Vec<u32>)| {
+                    let said = near.iter().map(|&k| self.beyond(piece, taken, points, b.segments[k as usize]));
+                    said.fold(taken.no_room(), f64::max)
+                };
+                boundaries.iter().zip(&known).map(of).fold(taken.no_room(), f64::max)
+            };
+            let bound = there.map_or_else(|| beyond(&middle, &still, &self.corners(&middle)[..1]), |(bound, _)| bound);
             let failed = bound < target || strict && there.is_none();
             let size = piece.size(&corners);
             let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
@@ -423,7 +431,8 @@ impl Swept<'_> {
                 self.sharpen_about(piece.step, piece.unit, levers);
                 open.push((piece, known));
             } else if !dull && (failed || size <= FINEST_M || work > MOST_WORK) {
-                let whole = || room(&piece, &taken, &hull).map_or(taken.no_room(), |(bound, _)| bound);
+                let whole =
+                    || room(&piece, &taken, &hull).map_or_else(|| beyond(&piece, &taken, &hull), |(bound, _)| bound);
                 // A place outside all areas may fail with a bound that would do.
                 let bound = if failed { bound } else { whole() }.min(target - ROUNDING_M);
                 least = Some(([middle.a[0], middle.c[0]], bound));
@@ -466,13 +475,31 @@ impl Swept<'_> {
     fn kept(&self, piece: &Piece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
         let apart = length(way);
         if apart < ROUNDING_M {
-            return taken.no_room();
+            return self.beyond(piece, taken, hull, segment);
         }
         let m = way.map(|x| x / apart);
         // Any direction would do, so rounding of this one does no harm.
         let beyond = |s: Point| hull.iter().map(move |x| m[0] * (s[0] - x[0]) + m[1] * (s[1] - x[1]));
         let apart = segment.into_iter().flat_map(beyond).fold(f64::INFINITY, f64::min);
         apart - self.toward(piece, taken, m) - taken.bow[0] - taken.bow[1] - ROUNDING_M
+    }
+
+    /// Bound of the room of a piece that is on the boundary or outside, metres, below zero. Beside a segment no place is farther outside than
+    /// it is from the segment, and it gets no farther than by its deviation across, to the worse side.
+    fn beyond(&self, piece: &Piece, taken: &Taken, points: &[Point], segment: Segment) -> f64 {
+        let [s, e] = segment;
+        let size = length([e[0] - s[0], e[1] - s[1]]);
+        let u = [(e[0] - s[0]) / size, (e[1] - s[1]) / size];
+        let placed = |x: &Point| framed([x[0] - s[0], x[1] - s[1]], u);
+        let margin = -taken.no_room();
+        let beside = |[along, _]: [f64; 2]| along >= margin && along <= size - margin;
+        if !points.iter().map(placed).all(beside) {
+            return taken.no_room();
+        }
+        let depth = points.iter().map(|x| placed(x)[1].abs()).fold(0.0, f64::max);
+        let across =
+            [[-u[1], u[0]], [u[1], -u[0]]].map(|m| self.toward(piece, taken, m)).into_iter().fold(0.0, f64::max);
+        (-(depth + across + taken.bow[0] + taken.bow[1] + ROUNDING_M)).max(taken.no_room())
     }
 
     /// As [`Self::kept`], in the best of several directions. Before a corner of the boundary, a longer way may be one in which the body

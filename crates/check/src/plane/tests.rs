@@ -560,3 +560,40 @@ fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
     }
     assert!(aslant > 20, "{aslant}");
 }
+
+/// Where a place passes over a long wall, it lacks no more than before: its deviation across the wall, to the worse side.
+#[test]
+fn a_place_beyond_a_long_wall_lacks_its_depth_and_its_deviation_across() {
+    let (chain, corridor) = (semi(), turn_left());
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut less = 0;
+    for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1)] {
+        let (step, link) = ((subject.road.lead + station) * STEPS, &chain.links[unit]);
+        let piece = Piece { unit, step, a: [link.front; 2], c: [link.half_width; 2], t: [0.0; 2] };
+        let corner = point(swept.pose(step, unit, 0.0), link.front, link.half_width);
+        let taken = swept.taken(&piece).still();
+        for degrees in (0..360).step_by(15) {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            // A wall across `[cos, sin]`, so far from the corner.
+            let wall = |apart_m: f64, from_m: f64| {
+                [from_m, from_m + 9.0]
+                    .map(|s| [corner[0] + apart_m * cos - s * sin, corner[1] + apart_m * sin + s * cos])
+            };
+            let inside = [wall(1e-5, -4.0), wall(-1e-5, -4.0)]
+                .map(|wall| swept.kept(&piece, &taken, &[corner], wall, way(&[corner], wall)))
+                .into_iter()
+                .fold(f64::INFINITY, f64::min)
+                .max(taken.no_room());
+            let beyond = |depth_m: f64| swept.beyond(&piece, &taken, &[corner], wall(-depth_m, -4.0));
+            assert!((inside - beyond(1e-5)).abs() < 1e-4, "{station} {unit} {degrees}: {inside} {}", beyond(1e-5));
+            let lacks_m = (beyond(0.0) - 0.01).max(taken.no_room());
+            assert!((beyond(0.01) - lacks_m).abs() < 1e-9, "{station} {unit} {degrees}");
+            assert!(beyond(9.0) == taken.no_room());
+            less += usize::from(beyond(0.0) > taken.no_room() + 1e-3);
+            // Past its end a segment says nothing.
+            assert!(swept.beyond(&piece, &taken, &[corner], wall(0.0, 0.01)) == taken.no_room());
+        }
+    }
+    assert!(less > 40, "{less}");
+}
