@@ -9,11 +9,11 @@ use netcert::check::{Chain, SpanClaim, Subject, Weight, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
+use oracle::area_attack::{Found, attack_areas};
 use oracle::claim::claim;
 use oracle::crossing::{Crossing, Manoeuvre};
 use oracle::draw::Draw;
 use oracle::planner::{drivable, room_m};
-use oracle::siege::{Found, besiege};
 use rayon::prelude::*;
 
 const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"];
@@ -49,7 +49,7 @@ fn attacked(
     let shifts = [Options::default(), Options { max_shift_m: 0.0, ..Options::default() }];
     shifts.map(|options| {
         let claim = claim(&corridor, vehicle, &options)?;
-        let found = besiege(&corridor, vehicle, &claim, draw, PLACES);
+        let found = attack_areas(&corridor, vehicle, &claim, draw, PLACES);
         let words = format!("{name}, {}, shift {}: {way:?}", vehicle.id, options.max_shift_m);
         Some(Attacked { words, rsc_m: claim.rsc_m, refuted: found.refutes(&claim), found })
     })

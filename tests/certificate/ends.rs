@@ -9,9 +9,9 @@ use crate::oracle;
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Plan, certify_plan};
 use netcert::vehicle::{Unit, Vehicle};
+use oracle::attack::{self, Attack};
 use oracle::claim::{Claim, Place, certify, of};
 use oracle::draw::Draw;
-use oracle::duel::{self, Duel};
 use oracle::path::Path;
 use oracle::road;
 use rayon::prelude::*;
@@ -127,7 +127,7 @@ pub fn refuted(
     draw: &mut Draw,
     others: usize,
 ) -> Option<String> {
-    attacked(corridor, vehicle, &duel::path(corridor, vehicle, claim), claim, draw, others)
+    attacked(corridor, vehicle, &attack::path(corridor, vehicle, claim), claim, draw, others)
 }
 
 /// As [`refuted`], along a path that follows the claim's plan.
@@ -139,7 +139,7 @@ pub fn attacked(
     draw: &mut Draw,
     others: usize,
 ) -> Option<String> {
-    let outcome = Duel::new(corridor, vehicle, path, claim.shrink).fight(claim, draw, others);
+    let outcome = Attack::new(corridor, vehicle, path, claim.shrink).fight(claim, draw, others);
     let (gap_m, room) = (outcome.least.clearance_m - claim.rsc_m, outcome.hinge.0 - claim.hinge_margin_rad);
     let words = || {
         format!(
@@ -148,7 +148,7 @@ pub fn attacked(
             (corridor.len() - 1) as f64 * corridor.spacing_m,
             corridor.spacing_m,
             claim.rsc_m,
-            duel::describe(&outcome),
+            attack::describe(&outcome),
             claim.hinge_margin_rad.to_degrees(),
             outcome.hinge.0.to_degrees(),
             outcome.hinge.1,

@@ -17,11 +17,11 @@ use netcert::route::{Measure, PartKind, Position, Question, Route};
 use netcert::stet::{self, Options};
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
+use oracle::area_attack::Found;
+use oracle::attack;
 use oracle::claim::{self, Claim};
 use oracle::draw::Draw;
-use oracle::duel;
 use oracle::journey::{Journey, Part};
-use oracle::siege::Found;
 use rayon::prelude::*;
 
 /// Places that are attacked in each area and on each stretch between areas.
@@ -157,7 +157,7 @@ fn attacked(driver: &Driver, route: &Route, name: &str, seed: u64) -> Claims {
     let mut claims = Claims::default();
     let name = format!("{name}, {:.0} m with {} turns", route.length_m, turns(route));
     if let Some(own) = claim::of(corridor, route.certificate.clone()) {
-        let path = duel::path(corridor, vehicle, &own);
+        let path = attack::path(corridor, vehicle, &own);
         let found = Journey::new(corridor, vehicle, &path).attack_whole(&own, &mut Draw(seed), PLACES);
         claims.whole.push(Attacked::of(name.clone(), &own, &found));
     }
@@ -166,7 +166,7 @@ fn attacked(driver: &Driver, route: &Route, name: &str, seed: u64) -> Claims {
     let planned = stet::certify_planned(corridor, &driver.model, &stations, &options, &Stop::never());
     let (certificate, results) = planned.expect("nobody cancels").expect("the corridor has stations");
     let Some(whole) = claim::of(corridor, certificate) else { return claims };
-    let path = duel::path(corridor, vehicle, &whole);
+    let path = attack::path(corridor, vehicle, &whole);
     let mut journey = Journey::new(corridor, vehicle, &path);
     for (part, result) in route.path.parts.iter().zip(results) {
         let (Some(rsc_m), Some(hinge_margin_rad)) = (result.rsc_m, result.hinge_margin_rad) else { continue };

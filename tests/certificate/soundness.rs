@@ -8,9 +8,9 @@ use crate::oracle;
 
 use netcert::corridor::Corridor;
 use netcert::vehicle::Vehicle;
+use oracle::attack::{self, Attack, Outcome};
 use oracle::claim::{Claim, certify};
 use oracle::draw::{self, Bends, Draw};
-use oracle::duel::{self, Duel, Outcome};
 use oracle::fleet;
 use rayon::prelude::*;
 
@@ -37,9 +37,9 @@ struct Verdict {
 impl Case {
     fn run(&self) -> Option<Verdict> {
         let claim = certify(&self.corridor, &self.vehicle)?;
-        let path = duel::path(&self.corridor, &self.vehicle, &claim);
-        let duel = Duel::new(&self.corridor, &self.vehicle, &path, claim.shrink);
-        let outcome = duel.fight(&claim, &mut Draw(self.seed), 1);
+        let path = attack::path(&self.corridor, &self.vehicle, &claim);
+        let attack = Attack::new(&self.corridor, &self.vehicle, &path, claim.shrink);
+        let outcome = attack.fight(&claim, &mut Draw(self.seed), 1);
         Some(Verdict {
             name: self.name.clone(),
             radius_m: self.radius_m,
@@ -64,7 +64,7 @@ impl Verdict {
             self.claim.limiting.unit,
             self.claim.limiting.ahead_m,
             self.claim.shrink,
-            duel::describe(&self.outcome),
+            attack::describe(&self.outcome),
             1e3 * self.gap_m(),
             1e3 * (self.outcome.first_order_m - self.claim.rsc_m),
         )

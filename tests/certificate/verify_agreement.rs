@@ -7,9 +7,9 @@ use netcert::check::{Chain, SpanClaim, Subject, TOLERANCE_M, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Planned, certify_spans};
 use netcert::vehicle::Vehicle;
+use oracle::attack;
 use oracle::claim::certify;
 use oracle::draw::{self, Draw};
-use oracle::duel;
 use oracle::fleet;
 use rayon::prelude::*;
 
@@ -118,7 +118,7 @@ fn no_claim_above_what_an_adversary_reached_is_confirmed() {
             let radius = [25.0, 60.0, 150.0][index as usize % 3];
             let (vehicle, corridor) = random(100 + index, radius);
             let Some(claim) = certify(&corridor, &vehicle) else { return 0 };
-            let (_, outcome) = duel::margin_m(&corridor, &vehicle, &claim, &mut Draw(index), 1);
+            let (_, outcome) = attack::margin_m(&corridor, &vehicle, &claim, &mut Draw(index), 1);
             let whole = 0..corridor.len();
             let row = planned(&corridor, &vehicle, std::slice::from_ref(&whole));
             let chain = Chain::new(&vehicle);

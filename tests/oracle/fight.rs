@@ -5,7 +5,7 @@ use netcert::stet::{Model, Options};
 use netcert::turns::TurnCorridors;
 
 use super::draw::Draw;
-use super::{claim, duel, fleet, siege};
+use super::{area_attack, attack, claim, fleet};
 
 /// Paths with less leeway are not attacked, metres.
 const HOPELESS_M: f64 = -3.0;
@@ -29,13 +29,13 @@ pub fn none_is_refuted(made: &TurnCorridors, id: &str, part: usize, what: &str, 
             continue;
         };
         if !path.corridor.areas.is_empty() {
-            let refuted = siege::besiege(&path.corridor, &vehicle, &claim, draw, PLACES).refutes(&claim);
+            let refuted = area_attack::attack_areas(&path.corridor, &vehicle, &claim, draw, PLACES).refutes(&claim);
             assert!(refuted.is_none(), "{what} {id}: {refuted:?}");
             held += 1;
             continue;
         }
-        let (gap_m, outcome) = duel::margin_m(&path.corridor, &vehicle, &claim, draw, 1);
-        assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", duel::describe(&outcome));
+        let (gap_m, outcome) = attack::margin_m(&path.corridor, &vehicle, &claim, draw, 1);
+        assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", attack::describe(&outcome));
         held += 1;
     }
     held

@@ -7,7 +7,7 @@ use netcert::vehicle::Vehicle;
 
 use super::claim::{Claim, Place};
 use super::draw::Draw;
-use super::{duel, siege};
+use super::{area_attack, attack};
 
 /// Errors of RK4 at 0.1 m and of the plan's cubic, as in `tests/certificate/soundness.rs`.
 const ALLOWANCE_M: f64 = 2e-5;
@@ -28,16 +28,16 @@ pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, s
     let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m.unwrap(), result.shrink, result.hinge_margin_rad.unwrap());
     let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
     if !corridor.areas.is_empty() {
-        let found = siege::besiege(corridor, vehicle, &claim, &mut Draw(seed), PLACES);
+        let found = area_attack::attack_areas(corridor, vehicle, &claim, &mut Draw(seed), PLACES);
         let length_m = corridor.len() as f64 * corridor.spacing_m;
         println!("{length_m:.0} m, RSC {:.3} m, least room found {:.3} m", claim.rsc_m, found.least_m());
         let refuted = found.refutes(&claim);
         assert!(refuted.is_none(), "{refuted:?}");
         return;
     }
-    let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
+    let (gap_m, outcome) = attack::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
     let length_m = corridor.len() as f64 * corridor.spacing_m;
-    println!("{length_m:.0} m, RSC {:.3} m, {}", claim.rsc_m, duel::describe(&outcome));
-    assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, duel::describe(&outcome));
+    println!("{length_m:.0} m, RSC {:.3} m, {}", claim.rsc_m, attack::describe(&outcome));
+    assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, attack::describe(&outcome));
     assert!(outcome.hinge.0 >= claim.hinge_margin_rad - 1e-6);
 }

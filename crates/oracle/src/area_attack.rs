@@ -1,7 +1,7 @@
 //! The adversary against areas: one corridor with areas, one vehicle, one claim.
 //!
 //! Where an area counts, disturbances push the places of bodies that have the least room at the boundary nearest to
-//! them. Bounds, attacks on hinges and noise are those of a duel, which also measures half-widths where no area counts.
+//! them. Bounds, attacks on hinges and noise are those of an attack, which also measures half-widths where no area counts.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -10,9 +10,9 @@ use netcert_base::vehicle::Vehicle;
 
 use crate::adversary::{Bounds, Target, kernel};
 use crate::area::EDGES;
+use crate::attack::{self, Attack, STEPS_PER_M, SWING_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
-use crate::duel::{self, Duel, STEPS_PER_M, SWING_M};
 use crate::path::{Path, V2, along, dot};
 use crate::simulator::{Disturbance, Near, Run, sweep};
 use crate::swept::{Grounds, Stretch, Worst, body};
@@ -29,7 +29,7 @@ pub const ALLOWANCE_M: f64 = 1e-3;
 /// The same for hinges, radians.
 pub const ALLOWANCE_RAD: f64 = 2e-4;
 
-/// What a siege found.
+/// What an attack on areas found.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// Least room in the areas, and its place. `None` if no area counts anywhere.
@@ -92,9 +92,9 @@ impl Found {
 }
 
 /// Attacks a claim at the `places` worst places, then its hinges and with noise.
-pub fn besiege(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim, draw: &mut Draw, places: usize) -> Found {
-    let path = duel::path(corridor, vehicle, claim);
-    Siege::new(corridor, vehicle, &path, claim.shrink).fight(draw, places)
+pub fn attack_areas(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim, draw: &mut Draw, places: usize) -> Found {
+    let path = attack::path(corridor, vehicle, claim);
+    AreaAttack::new(corridor, vehicle, &path, claim.shrink).fight(draw, places)
 }
 
 /// What a claim is about: steps of the drive, and feet of body points along the corridor, metres.
@@ -112,27 +112,27 @@ impl Scope {
 }
 
 /// Vehicle, areas and plan of one claim.
-pub struct Siege<'a> {
-    pub(crate) duel: Duel<'a>,
+pub struct AreaAttack<'a> {
+    pub(crate) attack: Attack<'a>,
     pub(crate) grounds: Grounds,
     pub(crate) found: Found,
     pub(crate) scope: Scope,
 }
 
-impl<'a> Siege<'a> {
-    /// Prepares a siege: drives the path undisturbed. The path has one vertex for each station.
+impl<'a> AreaAttack<'a> {
+    /// Prepares an attack on areas: drives the path undisturbed. The path has one vertex for each station.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
-        let duel = Duel::new(corridor, vehicle, path, shrink);
-        let grounds = Grounds::new(corridor, &duel.drive);
-        let mut siege = Self { duel, grounds, found: Found::default(), scope: Scope::whole() };
-        siege.begin();
-        siege
+        let attack = Attack::new(corridor, vehicle, path, shrink);
+        let grounds = Grounds::new(corridor, &attack.drive);
+        let mut areas = Self { attack, grounds, found: Found::default(), scope: Scope::whole() };
+        areas.begin();
+        areas
     }
 
     /// Forgets what was found, and measures the undisturbed run.
     pub(crate) fn begin(&mut self) {
         self.found = Found::default();
-        self.with_nominal(|siege, nominal| siege.measure(nominal, siege.duel.on_road(), "nothing"));
+        self.with_nominal(|areas, nominal| areas.measure(nominal, areas.attack.on_road(), "nothing"));
         self.found.undisturbed_m = self.found.least.map_or(f64::INFINITY, |worst| worst.room_m);
     }
 
@@ -140,11 +140,11 @@ impl<'a> Siege<'a> {
     pub fn fight(mut self, draw: &mut Draw, places: usize) -> Found {
         let steps = self.grounds.steps();
         self.attack_in(steps, places);
-        self.duel.attack_hinges(draw);
-        let noise = self.duel.noise(draw);
-        let run = self.duel.drive.whole(&noise);
-        self.measure(&run, self.duel.on_road(), "noise");
-        self.found.hinge = self.duel.outcome.hinge;
+        self.attack.attack_hinges(draw);
+        let noise = self.attack.noise(draw);
+        let run = self.attack.drive.whole(&noise);
+        self.measure(&run, self.attack.on_road(), "noise");
+        self.found.hinge = self.attack.outcome.hinge;
         self.found
     }
 
@@ -164,15 +164,15 @@ impl<'a> Siege<'a> {
     /// Calls `act` with the undisturbed run, which it may not change.
     pub(crate) fn with_nominal(&mut self, act: impl FnOnce(&mut Self, &Run)) {
         let empty = Run { first: 0, guide: Vec::new(), headings: Vec::new() };
-        let nominal = std::mem::replace(&mut self.duel.nominal, empty);
+        let nominal = std::mem::replace(&mut self.attack.nominal, empty);
         act(self, &nominal);
-        self.duel.nominal = nominal;
+        self.attack.nominal = nominal;
     }
 
     /// The places at which the adversary gets closest to the boundary at first order. Those of each edge are looked at
     /// whose room is less than a little before and after, and the edge's ends at the same moment.
     fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<Worst> {
-        let (drive, nominal) = (&self.duel.drive, &self.duel.nominal);
+        let (drive, nominal) = (&self.attack.drive, &self.attack.nominal);
         let steps: Vec<usize> = steps.step_by(COARSE).collect();
         let mut kept: Vec<Worst> = Vec::new();
         for unit in 0..drive.vehicle.units.len() {
@@ -206,9 +206,9 @@ impl<'a> Siege<'a> {
 
     /// What the linearised adversary leaves of a place's room, metres.
     fn first_order_m(&self, worst: &Worst) -> f64 {
-        let target = self.target(&self.duel.nominal, worst, 1.0);
-        let kernel = kernel(&self.duel.drive, &self.duel.nominal, &self.duel.calm, &target, self.duel.memory());
-        worst.room_m - kernel.reach_m(&self.duel.bounds)
+        let target = self.target(&self.attack.nominal, worst, 1.0);
+        let kernel = kernel(&self.attack.drive, &self.attack.nominal, &self.attack.calm, &target, self.attack.memory());
+        worst.room_m - kernel.reach_m(&self.attack.bounds)
     }
 
     /// A place and the way from there to the boundary: outwards if it is inside, further away if it is outside.
@@ -219,7 +219,7 @@ impl<'a> Siege<'a> {
             let towards = sign * worst.room_m.signum() / length;
             [towards * way[0], towards * way[1]]
         } else {
-            let out = body(&self.duel.drive, run, worst.step, worst.unit).outwards(worst.edge);
+            let out = body(&self.attack.drive, run, worst.step, worst.unit).outwards(worst.edge);
             [sign * out[0], sign * out[1]]
         };
         Target { step: worst.step, unit: worst.unit, ahead_m: worst.ahead_m, aside_m: worst.aside_m, push }
@@ -228,30 +228,31 @@ impl<'a> Siege<'a> {
     /// Attacks a place: linearised about the undisturbed run, then twice about the attacked run, at the place of the
     /// same unit that is worst there.
     fn attack(&mut self, worst: Worst, (fast, sign): (bool, f64), by: &'static str) {
-        let drive_steps = self.duel.drive.steps();
-        let per_step = self.duel.drive.path.spacing_m / self.duel.drive.steps_per_span as f64;
+        let drive_steps = self.attack.drive.steps();
+        let per_step = self.attack.drive.path.spacing_m / self.attack.drive.steps_per_span as f64;
         let slope = if fast {
-            2.0 * self.duel.bounds.steer_m / SWING_M
+            2.0 * self.attack.bounds.steer_m / SWING_M
         } else {
-            self.duel.drive.vehicle.tracking_heading_rad.tan()
+            self.attack.drive.vehicle.tracking_heading_rad.tan()
         };
-        let bounds = Bounds { change_m: slope * per_step, ..self.duel.bounds };
-        let mut target = self.target(&self.duel.nominal, &worst, sign);
+        let bounds = Bounds { change_m: slope * per_step, ..self.attack.bounds };
+        let mut target = self.target(&self.attack.nominal, &worst, sign);
         let mut attacked: Option<(Run, Disturbance)> = None;
         for round in 0..3 {
-            let (run, before) = attacked.as_ref().map_or((&self.duel.nominal, &self.duel.calm), |(run, d)| (run, d));
-            let kernel = kernel(&self.duel.drive, run, before, &target, self.duel.memory());
+            let (run, before) =
+                attacked.as_ref().map_or((&self.attack.nominal, &self.attack.calm), |(run, d)| (run, d));
+            let kernel = kernel(&self.attack.drive, run, before, &target, self.attack.memory());
             let near = target.step.saturating_sub(15 * STEPS_PER_M).max(kernel.first)
                 ..(target.step + 3 * STEPS_PER_M).min(drive_steps);
             let disturbance = kernel.attack(&bounds, drive_steps);
-            let run = self.duel.from(kernel.first, near.end, &disturbance);
+            let run = self.attack.from(kernel.first, near.end, &disturbance);
             self.measure(&run, near.clone(), by);
             if !fast {
-                self.duel.measure_hinges(&run, near);
+                self.attack.measure_hinges(&run, near);
             }
             // A run ends a little after its target, so the next round's place has to lie before its end.
             let around = target.step.saturating_sub(15)..(target.step + 15).min(run.steps().end);
-            let again = self.grounds.least_of(&self.duel.drive, &run, around, worst.unit);
+            let again = self.grounds.least_of(&self.attack.drive, &run, around, worst.unit);
             let Some(again) = again.filter(|_| round < 2) else { break };
             target = self.target(&run, &again, sign);
             attacked = Some((run, disturbance));
@@ -260,7 +261,7 @@ impl<'a> Siege<'a> {
 
     /// Records the least room of a run in some steps, and its clearance where no area counts.
     pub(crate) fn measure(&mut self, run: &Run, range: Range<usize>, by: &'static str) {
-        let drive = &self.duel.drive;
+        let drive = &self.attack.drive;
         let range = range.start.max(run.first).max(self.scope.steps.start)
             ..range.end.min(run.steps().end).min(self.scope.steps.end);
         if let Some(worst) = self.grounds.least(drive, run, range.clone())
@@ -279,10 +280,10 @@ impl<'a> Siege<'a> {
         };
         for stretch in self.grounds.stretches(range) {
             match stretch {
-                Stretch::Outside(steps) => sweep(drive, run, &self.duel.road, steps, (COARSE, 0.5), &mut note),
+                Stretch::Outside(steps) => sweep(drive, run, &self.attack.road, steps, (COARSE, 0.5), &mut note),
                 Stretch::Doubtful(steps) => {
                     let mut units: Vec<(usize, Near)> = Vec::new();
-                    sweep(drive, run, &self.duel.road, steps, (COARSE, 0.5), |near| {
+                    sweep(drive, run, &self.attack.road, steps, (COARSE, 0.5), |near| {
                         match units.last_mut().filter(|(unit, last)| (*unit, last.step) == (near.unit, near.step)) {
                             Some((_, last)) if near.clearance_m < last.clearance_m => *last = near,
                             Some(_) => {}
@@ -340,9 +341,9 @@ mod tests {
         let vehicle = fleet::vehicle("EU-SEMI16.5");
         let corridor = strip();
         let open = claim(&corridor, 0.0);
-        let found = besiege(&corridor, &vehicle, &open, &mut Draw(1), 4);
+        let found = attack_areas(&corridor, &vehicle, &open, &mut Draw(1), 4);
         let (_, outcome) =
-            duel::margin_m(&Corridor { areas: Vec::new(), ..corridor.clone() }, &vehicle, &open, &mut Draw(1), 8);
+            attack::margin_m(&Corridor { areas: Vec::new(), ..corridor.clone() }, &vehicle, &open, &mut Draw(1), 8);
         let least = found.least.unwrap();
         assert!((found.undisturbed_m - (2.5 - 0.5 * 2.55)).abs() < 1e-6);
         assert!((least.room_m - outcome.least.clearance_m).abs() < 0.01, "{least:?} {:?}", outcome.least);
@@ -362,7 +363,7 @@ mod tests {
         let mut area = Area::clone(&corridor.areas[0].area);
         area.rings.push(island);
         corridor.areas[0].area = Arc::new(area);
-        let found = besiege(&corridor, &vehicle, &claim(&corridor, 0.0), &mut Draw(2), 2);
+        let found = attack_areas(&corridor, &vehicle, &claim(&corridor, 0.0), &mut Draw(2), 2);
         assert!(found.under.is_some());
         assert!(found.refutes(&claim(&corridor, 0.0)).is_some());
         assert!(found.least.unwrap().room_m < 0.0);
@@ -377,7 +378,7 @@ mod tests {
             let mut draw = Draw(0x51e6e + index as u64 * 7919);
             let crossing = Crossing::drawn(&mut draw);
             let corridor = crossing.corridor(&drivable(&crossing, &vehicle, 1).way, &vehicle);
-            let found = besiege(&corridor, &vehicle, &claim(&corridor, 0.0), &mut draw, 5);
+            let found = attack_areas(&corridor, &vehicle, &claim(&corridor, 0.0), &mut draw, 5);
             let room_m = found.least.unwrap().room_m;
             assert!((room_m - found.first_order_m).abs() < 0.03, "{index} {id}: {found:?}");
             assert!(room_m < found.undisturbed_m - 0.1, "{index} {id}: {found:?}");

@@ -20,7 +20,7 @@ pub const STEPS_PER_M: usize = 10;
 /// Metres in which the steer axle may swing from one bound to the other in a fast attack.
 pub(crate) const SWING_M: f64 = 0.3;
 
-/// The result of a duel.
+/// The result of an attack.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Least clearance found, metres, and its place.
@@ -36,7 +36,7 @@ pub struct Outcome {
 }
 
 /// Vehicle, road and plan of one claim.
-pub struct Duel<'a> {
+pub struct Attack<'a> {
     pub drive: Drive<'a>,
     pub(crate) road: Road<'a>,
     pub(crate) calm: Disturbance,
@@ -62,8 +62,8 @@ pub fn path(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim) -> Path {
     Path::through(&claim.plan, corridor.spacing_m, headings, 3.0 * vehicle.length_m, vehicle.length_m + 8.0)
 }
 
-impl<'a> Duel<'a> {
-    /// Prepares a duel: drives the path undisturbed.
+impl<'a> Attack<'a> {
+    /// Prepares an attack: drives the path undisturbed.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
         let drive = Drive::new(vehicle, path, (STEPS_PER_M as f64 * corridor.spacing_m).ceil() as usize);
         let calm = Disturbance::none(drive.steps());
@@ -80,13 +80,13 @@ impl<'a> Duel<'a> {
             hinge: (f64::INFINITY, 0),
         };
         let bounds = Bounds { steer_m, change_m: 0.0, slip };
-        let mut duel = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
-        let range = duel.on_road();
-        let nominal = std::mem::replace(&mut duel.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
-        duel.measure(&nominal, range, "nothing", true);
-        duel.nominal = nominal;
-        duel.outcome.undisturbed_m = duel.outcome.least.clearance_m;
-        duel
+        let mut attack = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
+        let range = attack.on_road();
+        let nominal = std::mem::replace(&mut attack.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
+        attack.measure(&nominal, range, "nothing", true);
+        attack.nominal = nominal;
+        attack.outcome.undisturbed_m = attack.outcome.least.clearance_m;
+        attack
     }
 
     /// Runs every attack: at the limiting place, at the worst undisturbed place, at `others` random places, and
@@ -331,6 +331,6 @@ pub fn margin_m(
     others: usize,
 ) -> (f64, Outcome) {
     let ride = path(corridor, vehicle, claim);
-    let outcome = Duel::new(corridor, vehicle, &ride, claim.shrink).fight(claim, draw, others);
+    let outcome = Attack::new(corridor, vehicle, &ride, claim.shrink).fight(claim, draw, others);
     (outcome.least.clearance_m - claim.rsc_m, outcome)
 }

@@ -1,7 +1,7 @@
 //! The adversary against a route: one corridor with areas at its turns and half-widths elsewhere, one vehicle, and
 //! claims about all of it or about a part.
 //!
-//! In areas it attacks as a siege does. Elsewhere it pushes the body points with the least clearance over their nearer
+//! In areas it attacks as an attack on areas does. Elsewhere it pushes the body points with the least clearance over their nearer
 //! edge.
 
 use std::ops::Range;
@@ -10,11 +10,11 @@ use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
 use crate::adversary::{Bounds, Target, kernel};
+use crate::area_attack::{AreaAttack, Found, Scope};
+use crate::attack::{STEPS_PER_M, SWING_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
-use crate::duel::{STEPS_PER_M, SWING_M};
 use crate::path::{Path, along, left_of};
-use crate::siege::{Found, Scope, Siege};
 use crate::simulator::{Near, Run, sweep};
 use crate::swept::Stretch;
 
@@ -37,62 +37,62 @@ pub struct Part {
 
 /// A vehicle on its whole route.
 pub struct Journey<'a> {
-    siege: Siege<'a>,
+    areas: AreaAttack<'a>,
 }
 
 impl<'a> Journey<'a> {
     /// Prepares a journey: drives the path undisturbed. The path has one vertex for each station.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path) -> Self {
-        Self { siege: Siege::new(corridor, vehicle, path, 1.0) }
+        Self { areas: AreaAttack::new(corridor, vehicle, path, 1.0) }
     }
 
     /// Attacks the claim about the whole route: at the `places` worst places of every area and of every stretch between
     /// areas, then its hinges and with noise.
     pub fn attack_whole(&mut self, claim: &Claim, draw: &mut Draw, places: usize) -> Found {
         self.begin(claim.shrink, Scope::whole());
-        self.attack(self.siege.duel.on_road(), places);
-        let siege = &mut self.siege;
-        siege.duel.attack_hinges(draw);
-        let noise = siege.duel.noise(draw);
-        let run = siege.duel.drive.whole(&noise);
-        siege.measure(&run, siege.duel.on_road(), "noise");
-        siege.found.hinge = siege.duel.outcome.hinge;
-        siege.found.clone()
+        self.attack(self.areas.attack.on_road(), places);
+        let areas = &mut self.areas;
+        areas.attack.attack_hinges(draw);
+        let noise = areas.attack.noise(draw);
+        let run = areas.attack.drive.whole(&noise);
+        areas.measure(&run, areas.attack.on_road(), "noise");
+        areas.found.hinge = areas.attack.outcome.hinge;
+        areas.found.clone()
     }
 
     /// Attacks the claim about a part. Where half-widths count it is about body points whose feet are on the part. In
     /// areas it is about all bodies while some body is on the part.
     pub fn attack_part(&mut self, part: &Part, places: usize) -> Found {
-        let vehicle = self.siege.duel.drive.vehicle;
+        let vehicle = self.areas.attack.drive.vehicle;
         let front_m = vehicle.units[0].front_overhang_m;
         let heads_m = (part.from_m - front_m, part.to_m + vehicle.length_m - front_m);
         let steps = self.step_at(heads_m.0)..self.step_at(heads_m.1);
         self.begin(part.shrink, Scope { steps: steps.clone(), feet_m: part.from_m..=part.to_m });
         self.attack(steps, places);
-        self.siege.found.clone()
+        self.areas.found.clone()
     }
 
     fn begin(&mut self, shrink: f64, scope: Scope) {
-        let siege = &mut self.siege;
-        siege.duel.bounds.steer_m = shrink * siege.duel.drive.vehicle.tracking_tolerance_m;
-        siege.duel.outcome.hinge = (f64::INFINITY, 0);
-        siege.scope = scope;
-        siege.begin();
+        let areas = &mut self.areas;
+        areas.attack.bounds.steer_m = shrink * areas.attack.drive.vehicle.tracking_tolerance_m;
+        areas.attack.outcome.hinge = (f64::INFINITY, 0);
+        areas.scope = scope;
+        areas.begin();
     }
 
     /// The step at which the steer axle is so far from the route's beginning.
     fn step_at(&self, from_m: f64) -> usize {
-        let drive = &self.siege.duel.drive;
+        let drive = &self.areas.attack.drive;
         let spans = drive.path.span_of_vertex(0) as f64 + from_m / drive.path.spacing_m;
         ((spans * drive.steps_per_span as f64).max(0.0) as usize).min(drive.steps())
     }
 
     fn attack(&mut self, steps: Range<usize>, places: usize) {
-        let on_road = self.siege.duel.on_road();
+        let on_road = self.areas.attack.on_road();
         let steps = steps.start.max(on_road.start)..steps.end.min(on_road.end);
-        for stretch in self.siege.grounds.stretches(steps) {
+        for stretch in self.areas.grounds.stretches(steps) {
             match stretch {
-                Stretch::Inside(steps) => self.siege.attack_in(steps, places),
+                Stretch::Inside(steps) => self.areas.attack_in(steps, places),
                 Stretch::Outside(steps) => {
                     for target in self.targets(steps, places) {
                         for fast in [true, false] {
@@ -107,31 +107,38 @@ impl<'a> Journey<'a> {
 
     /// The body points that the adversary gets farthest over an edge of the corridor at first order.
     fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<Target> {
-        let Siege { duel, scope, found, .. } = &mut self.siege;
+        let AreaAttack { attack, scope, found, .. } = &mut self.areas;
         let mut worst: Vec<Near> = Vec::new();
         for from in steps.clone().step_by(APART_STEPS) {
             let mut least: Vec<Near> = Vec::new();
-            sweep(&duel.drive, &duel.nominal, &duel.road, from..(from + APART_STEPS).min(steps.end), COARSE, |near| {
-                if !scope.feet_m.contains(&near.foot_m) {
-                    return;
-                }
-                match least.iter_mut().find(|other| (other.unit, other.side) == (near.unit, near.side)) {
-                    Some(other) if near.clearance_m < other.clearance_m => *other = near,
-                    Some(_) => {}
-                    None => least.push(near),
-                }
-            });
+            sweep(
+                &attack.drive,
+                &attack.nominal,
+                &attack.road,
+                from..(from + APART_STEPS).min(steps.end),
+                COARSE,
+                |near| {
+                    if !scope.feet_m.contains(&near.foot_m) {
+                        return;
+                    }
+                    match least.iter_mut().find(|other| (other.unit, other.side) == (near.unit, near.side)) {
+                        Some(other) if near.clearance_m < other.clearance_m => *other = near,
+                        Some(_) => {}
+                        None => least.push(near),
+                    }
+                },
+            );
             worst.append(&mut least);
         }
         worst.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
         worst.truncate(LOOKED_AT * places);
         let reached = |near: &Near| {
-            let (_, tangent) = duel.road.centre(near.foot_m);
+            let (_, tangent) = attack.road.centre(near.foot_m);
             let push = along([0.0; 2], near.edge, left_of(tangent));
-            let aside_m = near.side * 0.5 * duel.drive.vehicle.units[near.unit].width_m;
+            let aside_m = near.side * 0.5 * attack.drive.vehicle.units[near.unit].width_m;
             let target = Target { step: near.step, unit: near.unit, ahead_m: near.ahead_m, aside_m, push };
-            let kernel = kernel(&duel.drive, &duel.nominal, &duel.calm, &target, duel.memory());
-            (near.clearance_m - kernel.reach_m(&duel.bounds), target)
+            let kernel = kernel(&attack.drive, &attack.nominal, &attack.calm, &target, attack.memory());
+            (near.clearance_m - kernel.reach_m(&attack.bounds), target)
         };
         let mut reached: Vec<(f64, Target)> = worst.iter().map(reached).collect();
         reached.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -142,25 +149,25 @@ impl<'a> Journey<'a> {
 
     /// Pushes a body point twice: linearised about the undisturbed run, then about the attacked run.
     fn push(&mut self, target: &Target, fast: bool) {
-        let siege = &mut self.siege;
-        let (duel, memory) = (&siege.duel, siege.duel.memory());
-        let steps = duel.drive.steps();
-        let per_step = duel.drive.path.spacing_m / duel.drive.steps_per_span as f64;
+        let areas = &mut self.areas;
+        let (attack, memory) = (&areas.attack, areas.attack.memory());
+        let steps = attack.drive.steps();
+        let per_step = attack.drive.path.spacing_m / attack.drive.steps_per_span as f64;
         let slope =
-            if fast { 2.0 * duel.bounds.steer_m / SWING_M } else { duel.drive.vehicle.tracking_heading_rad.tan() };
-        let bounds = Bounds { change_m: slope * per_step, ..duel.bounds };
+            if fast { 2.0 * attack.bounds.steer_m / SWING_M } else { attack.drive.vehicle.tracking_heading_rad.tan() };
+        let bounds = Bounds { change_m: slope * per_step, ..attack.bounds };
         let mut attacked: Option<(Run, _)> = None;
         for _ in 0..2 {
-            let duel = &siege.duel;
-            let (run, before) = attacked.as_ref().map_or((&duel.nominal, &duel.calm), |(run, d)| (run, d));
-            let kernel = kernel(&duel.drive, run, before, target, memory);
+            let attack = &areas.attack;
+            let (run, before) = attacked.as_ref().map_or((&attack.nominal, &attack.calm), |(run, d)| (run, d));
+            let kernel = kernel(&attack.drive, run, before, target, memory);
             let near = target.step.saturating_sub(15 * STEPS_PER_M).max(kernel.first)
                 ..(target.step + 3 * STEPS_PER_M).min(steps);
             let disturbance = kernel.attack(&bounds, steps);
-            let run = duel.from(kernel.first, near.end, &disturbance);
-            siege.measure(&run, near.clone(), if fast { "a push" } else { "a push within the course tolerance" });
+            let run = attack.from(kernel.first, near.end, &disturbance);
+            areas.measure(&run, near.clone(), if fast { "a push" } else { "a push within the course tolerance" });
             if !fast {
-                siege.duel.measure_hinges(&run, near);
+                areas.attack.measure_hinges(&run, near);
             }
             attacked = Some((run, disturbance));
         }

@@ -6,16 +6,16 @@
 
 pub mod adversary;
 pub mod area;
+pub mod area_attack;
+pub mod attack;
 pub mod claim;
 pub mod crossing;
 pub mod draw;
-pub mod duel;
 pub mod fleet;
 pub mod journey;
 pub mod path;
 pub mod planner;
 pub mod road;
-pub mod siege;
 pub mod simulator;
 pub mod swept;
 pub mod turns;

@@ -278,7 +278,7 @@ mod tests {
     use crate::path::Path;
     use crate::simulator::{Disturbance, Drive};
     use crate::swept::Grounds;
-    use crate::{duel, fleet};
+    use crate::{attack, fleet};
 
     fn cases() -> impl Iterator<Item = (Crossing, Draw)> {
         (0..20).map(|index| {
@@ -298,7 +298,7 @@ mod tests {
             let plan: Vec<V2> = corridor.x.iter().zip(&corridor.y).map(|(x, y)| [*x, *y]).collect();
             let headings = (corridor.heading[0], corridor.heading[corridor.len() - 1]);
             let path = Path::through(&plan, SPACING_M, headings, 60.0, 40.0);
-            let drive = Drive::new(&vehicle, &path, duel::STEPS_PER_M / 2);
+            let drive = Drive::new(&vehicle, &path, attack::STEPS_PER_M / 2);
             let run = drive.whole(&Disturbance::none(drive.steps()));
             let swept = Grounds::new(&corridor, &drive).least(&drive, &run, run.steps()).unwrap().room_m;
             // Without the hinges' limits, of which the simulator knows nothing.

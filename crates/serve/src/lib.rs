@@ -20,7 +20,7 @@
 //! | `region`, `roads` | one state of the database file; the network in memory |
 //! | `older`, `changes` | the older database beside it; what changed since then |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
-//! | `made_once` | values that are made on first use; the last results of long work |
+//! | `memo` | values that are made on first use; the last results of long work |
 //! | `search` | roads by what people type |
 //! | `tiles` | vector tiles |
 //! | `api` | all other endpoints, one file each |
@@ -49,7 +49,7 @@ mod changes;
 mod drive;
 mod gate;
 mod lines;
-mod made_once;
+mod memo;
 mod older;
 mod options;
 mod planning;

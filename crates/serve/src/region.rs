@@ -12,7 +12,7 @@ use serde_json::json;
 use super::api::explain::Explained;
 use super::ask::shortened;
 use super::changes::Changes;
-use super::made_once::{Late, Recent};
+use super::memo::{Late, Recent};
 use super::older::Older;
 use super::options::Limits;
 use super::planning::{Planned, Router};

@@ -6,7 +6,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use rustc_hash::FxHashMap;
 
-use super::made_once::Recent;
+use super::memo::Recent;
 use super::problem::Problem;
 use crate::network::{EARTH_RADIUS_M, Network, offset_m};
 use crate::osm::LonLat;

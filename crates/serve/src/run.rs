@@ -36,6 +36,7 @@ const WARM_UP_AFTER: Duration = Duration::from_secs(1);
 
 /// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ServeError {
     /// The database cannot be opened.
     #[error(transparent)]

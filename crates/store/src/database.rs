@@ -16,19 +16,19 @@ use crate::words::Named;
 use netcert_rows::settings::Settings;
 use netcert_rows::{EdgeCertificate, StoredPlan};
 
-use super::contents;
 use super::error::{StoreError, content};
-use super::evidence::{self, RegisterState};
-use super::names::corridor_no;
-use super::network_read;
-use super::packed::Packed;
-use super::part::with_suffix;
-use super::plans;
-use super::records::{self, Run, VehicleRecord};
-use super::schema::MIGRATIONS;
-use super::session::Session;
-use super::sets::{self, Set};
-use super::turns::{self, PackedSet, TurnSet};
+use crate::file::contents;
+use crate::file::part::with_suffix;
+use crate::file::schema::MIGRATIONS;
+use crate::file::session::Session;
+use crate::provenance::records::{self, Run, VehicleRecord};
+use crate::register::evidence::{self, RegisterState};
+use crate::results::compact::Packed;
+use crate::results::names::corridor_no;
+use crate::results::plans;
+use crate::results::sets::{self, Set};
+use crate::results::turns::{self, PackedSet, TurnSet};
+use crate::roads::network_read;
 
 type Sql<T> = Result<T, sqlx::Error>;
 

@@ -10,6 +10,7 @@ use crate::words::Named as _;
 
 /// An error of the store.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StoreError {
     /// There is no such file.
     #[error("{0}: no such database; make one with `netcert ingest REGION.osm.pbf`")]

@@ -16,35 +16,35 @@ use netcert_roads::turns::{JunctionArea, TurnFacts};
 use netcert_rows::settings::Settings;
 use netcert_rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCertificate};
 
-use super::amend::{self, Amendment};
-use super::areas;
-use super::backdrop;
-use super::contents;
 use super::database::Database;
 use super::error::StoreError;
-use super::evidence::{self, Register};
-use super::finished::{self, Finished};
-use super::gathered::{Gathered, NetworkRows};
-use super::growing::Growing;
-use super::junctions;
-use super::map_changes::{self, MapChanges};
-use super::names::{VERDICTS, corridor_no};
-use super::network_write::Written;
-use super::packed::Packed;
-use super::part::{Part, sorter, with_suffix};
-use super::placing::{Older, has_journal, options, put_in_place};
-use super::plans;
-use super::records::{self, Run, VehicleRecord};
-use super::renewal;
-use super::restrictions;
-use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
-use super::segments;
-use super::session::Session;
-use super::sets::{self, Set};
-use super::settings;
-use super::styles::{self, Shows};
-use super::turns::{self, TurnKey};
-use super::waiting::{SetNo, Waiting};
+use crate::file::contents;
+use crate::file::part::{Part, sorter, with_suffix};
+use crate::file::placing::{Older, has_journal, options, put_in_place};
+use crate::file::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
+use crate::file::session::Session;
+use crate::file::styles::{self, Shows};
+use crate::provenance::records::{self, Run, VehicleRecord};
+use crate::register::amend::{self, Amendment};
+use crate::register::evidence::{self, Register};
+use crate::register::renewal;
+use crate::results::checkpoint::{self, Finished};
+use crate::results::compact::Packed;
+use crate::results::names::{VERDICTS, corridor_no};
+use crate::results::plans;
+use crate::results::sets::{self, Set};
+use crate::results::settings;
+use crate::results::turns::{self, TurnKey};
+use crate::results::write_order::{SetNo, Waiting};
+use crate::roads::areas;
+use crate::roads::backdrop;
+use crate::roads::junctions;
+use crate::roads::map_changes::{self, MapChanges};
+use crate::roads::network_rows::{Gathered, NetworkRows};
+use crate::roads::network_thread::Growing;
+use crate::roads::network_write::Written;
+use crate::roads::restrictions;
+use crate::roads::segments;
 use netcert_files::sorter::Sorter;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -159,7 +159,7 @@ impl Writer {
     /// # Errors
     /// The file beside the database cannot be written.
     pub fn finished(&self, identity: &[u8; 32]) -> Result<Finished, StoreError> {
-        Finished::open(finished::path_of(&self.part.target), identity)
+        Finished::open(checkpoint::path_of(&self.part.target), identity)
     }
 
     /// The register of the older database; `None` if it has no measurements and never had any, or cannot be read.

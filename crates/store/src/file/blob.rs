@@ -17,13 +17,13 @@ const WKB_BYTES: usize = 1 + 4 + 4;
 const POSITION_BYTES: usize = 16;
 
 /// How many positions a line has whose blob takes this many bytes; `None` if no blob of a line takes so many.
-pub(super) fn positions_of(blob_bytes: usize) -> Option<u32> {
+pub(crate) fn positions_of(blob_bytes: usize) -> Option<u32> {
     let bytes = blob_bytes.checked_sub(HEADER_BYTES + WKB_BYTES)?;
     u32::try_from(bytes / POSITION_BYTES).ok().filter(|_| bytes.is_multiple_of(POSITION_BYTES))
 }
 
 /// The blob of a line, and the box around the line. An empty line has no blob.
-pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
+pub(crate) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
     let bounds = Bounds::around(positions.clone())?;
     let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + POSITION_BYTES * positions.len());
     header(&mut blob);
@@ -33,7 +33,7 @@ pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -
 }
 
 /// The blob of polygons, each with its outer ring first, and the box around them. Without a position there is no blob.
-pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>, Bounds)> {
+pub(crate) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>, Bounds)> {
     let rings = || polygons.iter().flatten();
     let bounds = rings().filter_map(|ring| Bounds::around(ring.iter().copied())).reduce(Bounds::union)?;
     let vertices: usize = rings().map(Vec::len).sum();
@@ -52,7 +52,7 @@ pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>,
 }
 
 /// The blob of a shape of the backdrop, and the box around it. Without a position there is no blob.
-pub(super) fn encode_shape(shape: &BackdropShape) -> Option<(Vec<u8>, Bounds)> {
+pub(crate) fn encode_shape(shape: &BackdropShape) -> Option<(Vec<u8>, Bounds)> {
     let mut blob = Vec::new();
     header(&mut blob);
     match shape {
@@ -76,7 +76,7 @@ pub(super) fn encode_shape(shape: &BackdropShape) -> Option<(Vec<u8>, Bounds)> {
 }
 
 /// The shape of a blob that [`encode_shape`] wrote; `None` for anything else.
-pub(super) fn decode_shape(blob: &[u8]) -> Option<BackdropShape> {
+pub(crate) fn decode_shape(blob: &[u8]) -> Option<BackdropShape> {
     let (header, mut wkb) = blob.split_at_checked(HEADER_BYTES)?;
     if !header.starts_with(&[b'G', b'P', 0, FLAGS]) {
         return None;
@@ -127,7 +127,7 @@ fn put_position(blob: &mut Vec<u8>, position: LonLat) {
 }
 
 /// The polygons of a blob that [`encode_polygons`] wrote; `None` for anything else.
-pub(super) fn decode_polygons(blob: &[u8]) -> Option<Vec<Vec<Vec<LonLat>>>> {
+pub(crate) fn decode_polygons(blob: &[u8]) -> Option<Vec<Vec<Vec<LonLat>>>> {
     let (header, mut wkb) = blob.split_at_checked(HEADER_BYTES)?;
     if !header.starts_with(&[b'G', b'P', 0, FLAGS]) {
         return None;
@@ -163,7 +163,7 @@ fn count_of(wkb: &mut &[u8], wkb_type: Option<u32>) -> Option<u32> {
 }
 
 /// The positions of a blob that [`encode`] wrote; `None` for anything else.
-pub(super) fn decode(blob: &[u8]) -> Option<Vec<LonLat>> {
+pub(crate) fn decode(blob: &[u8]) -> Option<Vec<LonLat>> {
     let (header, wkb) = blob.split_at_checked(HEADER_BYTES)?;
     let (wkb, points) = wkb.split_at_checked(WKB_BYTES)?;
     let expected = header.starts_with(&[b'G', b'P', 0, FLAGS]) && wkb.starts_with(&[1, WKB_LINESTRING as u8, 0, 0, 0]);

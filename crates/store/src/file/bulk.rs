@@ -10,13 +10,13 @@ use std::sync::mpsc::SyncSender;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use sqlx::sqlite::SqliteConnection;
 
-use super::error::{content, of_rusqlite};
+use crate::error::{content, of_rusqlite};
 
 /// Rows of a batch.
 const ROWS: usize = 1_000;
 
 /// Rows of one table.
-pub(super) struct Batch {
+pub(crate) struct Batch {
     sql: Arc<str>,
     columns: usize,
     values: Vec<Value>,
@@ -36,7 +36,7 @@ enum Value {
 
 impl Batch {
     /// Inserts the rows.
-    pub(super) async fn insert(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
+    pub(crate) async fn insert(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
         with_rusqlite(connection, |db| self.insert_into(db)).await
     }
 
@@ -63,7 +63,7 @@ impl Batch {
 
 /// Works on sqlx's connection with rusqlite, on the thread of the caller.
 #[allow(unsafe_code)]
-pub(super) async fn with_rusqlite<T>(
+pub(crate) async fn with_rusqlite<T>(
     connection: &mut SqliteConnection,
     work: impl FnOnce(&rusqlite::Connection) -> rusqlite::Result<T>,
 ) -> Result<T, sqlx::Error> {
@@ -75,7 +75,7 @@ pub(super) async fn with_rusqlite<T>(
 }
 
 /// Where batches go.
-pub(super) trait Takes {
+pub(crate) trait Takes {
     /// Takes the next batch.
     async fn take(&mut self, batch: Batch) -> Result<(), sqlx::Error>;
 }
@@ -87,7 +87,7 @@ impl Takes for SqliteConnection {
 }
 
 /// Batches for a connection that another thread works on.
-pub(super) struct Ahead(pub(super) SyncSender<Batch>);
+pub(crate) struct Ahead(pub(crate) SyncSender<Batch>);
 
 impl Takes for Ahead {
     /// Fails if the other thread has ended, whose error says why.
@@ -97,24 +97,24 @@ impl Takes for Ahead {
 }
 
 /// Collects rows of one table and inserts many of them together. Call [`Bulk::finish`] at the end.
-pub(super) struct Bulk {
+pub(crate) struct Bulk {
     batch: Batch,
 }
 
 impl Bulk {
     /// `into` is the table, with a list of columns if rows have only some of them, as in `edge (fid, geom)`.
-    pub(super) fn new(into: &'static str, columns: usize) -> Self {
+    pub(crate) fn new(into: &'static str, columns: usize) -> Self {
         let sql = format!("INSERT INTO {into} VALUES ({})", vec!["?"; columns].join(","));
         Self { batch: Batch { sql: sql.into(), columns, values: Vec::new(), bytes: Vec::new() } }
     }
 
     /// Adds the next value of the current row.
-    pub(super) fn add(&mut self, value: impl Column) {
+    pub(crate) fn add(&mut self, value: impl Column) {
         value.add_to(&mut self.batch);
     }
 
     /// Ends the current row. Inserts the collected rows if there are enough.
-    pub(super) async fn end_row(&mut self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
+    pub(crate) async fn end_row(&mut self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
         let Batch { columns, values, bytes, .. } = &self.batch;
         if values.len() % columns != 0 {
             return Err(content(format!("a row for {} has not {columns} columns", self.batch.sql)));
@@ -128,13 +128,13 @@ impl Bulk {
     }
 
     /// Inserts the rows that are left.
-    pub(super) async fn finish(self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
+    pub(crate) async fn finish(self, to: &mut impl Takes) -> Result<(), sqlx::Error> {
         if self.batch.values.is_empty() { Ok(()) } else { to.take(self.batch).await }
     }
 }
 
 /// What can be a column's value.
-pub(super) trait Column {
+pub(crate) trait Column {
     fn add_to(self, batch: &mut Batch);
 }
 

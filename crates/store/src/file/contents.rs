@@ -16,7 +16,7 @@ const TABLES: [(&str, &str); 6] = [
 ];
 
 /// Registers the tables, and the table of styles in the way of QGIS.
-pub(super) async fn add_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
+pub(crate) async fn add_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
     for (table, description) in TABLES {
         add(c, table, description, time, None).await?;
     }
@@ -31,7 +31,7 @@ async fn add(c: &mut SqliteConnection, table: &str, description: &str, time: &st
 }
 
 /// Sets the time of the last change of the registered tables.
-pub(super) async fn touch_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
+pub(crate) async fn touch_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
     let sql = "UPDATE gpkg_contents SET last_change = ? WHERE data_type = 'attributes'";
     sqlx::query(sql).bind(time).execute(c).await?;
     Ok(())

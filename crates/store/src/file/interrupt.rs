@@ -1,7 +1,7 @@
 //! Stops long statements when the caller is told to stop.
 
-use super::database::Database;
-use super::error::StoreError;
+use crate::database::Database;
+use crate::error::StoreError;
 use crate::stop::Stop;
 
 /// Number of instructions of SQLite's virtual machine between two checks, some ten microseconds.

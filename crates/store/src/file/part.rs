@@ -10,30 +10,30 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::error::StoreError;
+use crate::error::StoreError;
 use netcert_files::output_lock::{self, OutputLock};
 use netcert_files::scratch::Scratch;
 use netcert_files::sorter::Sorter;
 
 /// A locked `.part` file, empty at first. Dropping it removes the file unless the file became the target.
-pub(super) struct Part {
-    pub(super) target: PathBuf,
-    pub(super) path: PathBuf,
+pub(crate) struct Part {
+    pub(crate) target: PathBuf,
+    pub(crate) path: PathBuf,
     /// Whether a killed run had left a part behind, which was emptied.
-    pub(super) leftover: bool,
+    pub(crate) leftover: bool,
     lock: OutputLock,
     placed: bool,
 }
 
 /// `path` with `suffix` after its whole name.
-pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut name: OsString = path.as_os_str().to_owned();
     name.push(suffix);
     name.into()
 }
 
 /// A sorter with a temporary file at `path` with `suffix` after its name.
-pub(super) fn sorter<K, T>(path: &Path, suffix: &str) -> io::Result<Sorter<K, T>>
+pub(crate) fn sorter<K, T>(path: &Path, suffix: &str) -> io::Result<Sorter<K, T>>
 where
     K: Ord + Copy + Serialize + DeserializeOwned,
     T: Serialize + DeserializeOwned,
@@ -43,7 +43,7 @@ where
 
 impl Part {
     /// Creates and locks the part of `target`.
-    pub(super) fn create(target: &Path) -> Result<Self, StoreError> {
+    pub(crate) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
         let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
         remove_companions(&path)?;
@@ -51,7 +51,7 @@ impl Part {
     }
 
     /// Fills the part with the bytes of the target.
-    pub(super) fn copy_target(&mut self) -> Result<(), StoreError> {
+    pub(crate) fn copy_target(&mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
         let mut target = File::open(&self.target).map_err(at)?;
         let part = self.lock.file.as_mut().ok_or_else(|| at(io::Error::other("the part is not a file")))?;
@@ -61,7 +61,7 @@ impl Part {
 
     /// Syncs the part to the disk and renames it over the target. The database in the part must be closed, and no process
     /// may be changing the old one.
-    pub(super) fn place(mut self) -> Result<(), StoreError> {
+    pub(crate) fn place(mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
         if let Some(file) = &self.lock.file {
             file.sync_all().map_err(at)?;

@@ -5,16 +5,16 @@ use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::evidence::{Register, RegisterState};
-use super::part::{Part, with_suffix};
-use super::session::Session;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::part::{Part, with_suffix};
+use crate::file::session::Session;
+use crate::register::evidence::{Register, RegisterState};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// How a part is opened.
-pub(super) fn options(part: &Part) -> SqliteConnectOptions {
+pub(crate) fn options(part: &Part) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(&part.path)
         // If the program is killed, the part is thrown away, so no journal and no sync are needed before the end.
@@ -28,7 +28,7 @@ pub(super) fn options(part: &Part) -> SqliteConnectOptions {
 }
 
 /// Checks a part that is complete, and puts it in place of the older database.
-pub(super) fn put_in_place(session: Session, part: Part, older: Option<&Older>) -> Result<(), StoreError> {
+pub(crate) fn put_in_place(session: Session, part: Part, older: Option<&Older>) -> Result<(), StoreError> {
     session.close()?;
     check(&part.path, &part.target)?;
     settle(&part.target)?;
@@ -37,7 +37,7 @@ pub(super) fn put_in_place(session: Session, part: Part, older: Option<&Older>) 
 }
 
 /// The register of an older database, with its state, or why it cannot be read.
-pub(super) type Older = Result<(Register, RegisterState), StoreError>;
+pub(crate) type Older = Result<(Register, RegisterState), StoreError>;
 
 /// Refuses to lose measurements that somebody added to the older database meanwhile.
 fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), StoreError> {
@@ -49,7 +49,7 @@ fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), S
 }
 
 /// Whether a journal lies beside a database: that of a change in progress, or of a killed one.
-pub(super) fn has_journal(path: &Path) -> bool {
+pub(crate) fn has_journal(path: &Path) -> bool {
     ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists())
 }
 

@@ -8,26 +8,26 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 /// Version, description and statements of each migration. `after data` creates the triggers of the spatial index. The triggers
 /// call functions that only spatial programs have (`ST_IsEmpty`), so netcert inserts all rows of `edge` before it.
 const FILES: &[(i64, &str, &str)] = &[
-    (1, "geopackage", include_str!("../../../migrations/0001_geopackage.sql")),
-    (2, "network", include_str!("../../../migrations/0002_network.sql")),
-    (3, "certificates", include_str!("../../../migrations/0003_certificates.sql")),
-    (4, "after data", include_str!("../../../migrations/0004_after_data.sql")),
-    (5, "plans", include_str!("../../../migrations/0005_plans.sql")),
-    (6, "restrictions", include_str!("../../../migrations/0006_restrictions.sql")),
-    (7, "turns", include_str!("../../../migrations/0007_turns.sql")),
-    (8, "turn plans", include_str!("../../../migrations/0008_turn_plans.sql")),
-    (9, "areas", include_str!("../../../migrations/0009_areas.sql")),
-    (10, "evidence", include_str!("../../../migrations/0010_evidence.sql")),
-    (11, "junctions", include_str!("../../../migrations/0011_junctions.sql")),
-    (12, "map changes", include_str!("../../../migrations/0012_map_changes.sql")),
-    (13, "segments", include_str!("../../../migrations/0013_segments.sql")),
-    (14, "backdrop", include_str!("../../../migrations/0014_backdrop.sql")),
-    (15, "signatures", include_str!("../../../migrations/0015_signatures.sql")),
+    (1, "geopackage", include_str!("../../../../migrations/0001_geopackage.sql")),
+    (2, "network", include_str!("../../../../migrations/0002_network.sql")),
+    (3, "certificates", include_str!("../../../../migrations/0003_certificates.sql")),
+    (4, "after data", include_str!("../../../../migrations/0004_after_data.sql")),
+    (5, "plans", include_str!("../../../../migrations/0005_plans.sql")),
+    (6, "restrictions", include_str!("../../../../migrations/0006_restrictions.sql")),
+    (7, "turns", include_str!("../../../../migrations/0007_turns.sql")),
+    (8, "turn plans", include_str!("../../../../migrations/0008_turn_plans.sql")),
+    (9, "areas", include_str!("../../../../migrations/0009_areas.sql")),
+    (10, "evidence", include_str!("../../../../migrations/0010_evidence.sql")),
+    (11, "junctions", include_str!("../../../../migrations/0011_junctions.sql")),
+    (12, "map changes", include_str!("../../../../migrations/0012_map_changes.sql")),
+    (13, "segments", include_str!("../../../../migrations/0013_segments.sql")),
+    (14, "backdrop", include_str!("../../../../migrations/0014_backdrop.sql")),
+    (15, "signatures", include_str!("../../../../migrations/0015_signatures.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know
 /// (BIGINT, TIMESTAMP), and GDAL would warn of them at every listing.
-pub(super) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
+pub(crate) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
     version INTEGER PRIMARY KEY NOT NULL,
     description TEXT NOT NULL,
     installed_on DATETIME NOT NULL DEFAULT '1970-01-01T00:00:00.000Z',
@@ -37,10 +37,10 @@ pub(super) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
 )";
 
 /// The last migration before the bulk of the data.
-pub(super) const BEFORE_DATA: i64 = 3;
+pub(crate) const BEFORE_DATA: i64 = 3;
 
 /// All migrations of a database of this program.
-pub(super) static MIGRATIONS: LazyLock<Migrator> = LazyLock::new(|| {
+pub(crate) static MIGRATIONS: LazyLock<Migrator> = LazyLock::new(|| {
     let migration = |&(version, description, statements): &(i64, &'static str, &'static str)| {
         Migration::new(version, description.into(), MigrationType::Simple, statements.into_sql_str(), false)
     };

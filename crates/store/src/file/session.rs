@@ -10,23 +10,23 @@ use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use tokio::runtime::Runtime;
 
-use super::bulk::{Ahead, Batch};
-use super::error::StoreError;
+use crate::error::StoreError;
+use crate::file::bulk::{Ahead, Batch};
 use netcert_files::sqlite;
 
 /// Batches that wait for SQLite.
 const BATCHES_AHEAD: usize = 2;
 
 /// A connection, its runtime, and the name of the file for messages.
-pub(super) struct Session {
-    pub(super) path: PathBuf,
-    pub(super) runtime: Runtime,
-    pub(super) connection: SqliteConnection,
+pub(crate) struct Session {
+    pub(crate) path: PathBuf,
+    pub(crate) runtime: Runtime,
+    pub(crate) connection: SqliteConnection,
 }
 
 impl Session {
     /// Connects with `options`; messages name `path`.
-    pub(super) fn open(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {
+    pub(crate) fn open(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_time().build().map_err(|e| StoreError::io(path, e))?;
         let connection = runtime.block_on(sqlite::connect(options)).map_err(|e| StoreError::sql(path, e))?;
@@ -34,7 +34,7 @@ impl Session {
     }
 
     /// Runs some work on the connection.
-    pub(super) fn run<T>(
+    pub(crate) fn run<T>(
         &mut self,
         work: impl AsyncFnOnce(&mut SqliteConnection) -> Result<T, sqlx::Error>,
     ) -> Result<T, StoreError> {
@@ -42,7 +42,7 @@ impl Session {
     }
 
     /// Adds the rows that `make` makes, while another thread inserts them. Batches keep their order.
-    pub(super) fn fill<T>(
+    pub(crate) fn fill<T>(
         &mut self,
         make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
     ) -> Result<T, StoreError> {
@@ -50,7 +50,7 @@ impl Session {
     }
 
     /// As [`Self::fill`]. Ends with an error soon after `stop` is set.
-    pub(super) fn fill_until<T>(
+    pub(crate) fn fill_until<T>(
         &mut self,
         stop: &AtomicBool,
         make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
@@ -82,7 +82,7 @@ impl Session {
     }
 
     /// Closes the file and reports errors of closing.
-    pub(super) fn close(self) -> Result<(), StoreError> {
+    pub(crate) fn close(self) -> Result<(), StoreError> {
         self.runtime.block_on(self.connection.close()).map_err(|e| StoreError::sql(&self.path, e))
     }
 }

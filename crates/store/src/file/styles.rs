@@ -13,7 +13,7 @@ const OWNER: &str = "netcert";
 
 /// What a layer shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shows {
+pub(crate) enum Shows {
     /// The roads, by the source of their width.
     Edges,
     /// The roads that a vehicle may use, by the room that it has.
@@ -28,24 +28,26 @@ impl Shows {
     /// Name, description and the style itself.
     fn style(self) -> [&'static str; 3] {
         match self {
-            Self::Edges => {
-                ["width source", "How well each road's width is known", include_str!("../../../data/styles/edge.qml")]
-            }
+            Self::Edges => [
+                "width source",
+                "How well each road's width is known",
+                include_str!("../../../../data/styles/edge.qml"),
+            ],
             Self::Permits => {
-                ["room", "Metres to spare beside the vehicle", include_str!("../../../data/styles/permit.qml")]
+                ["room", "Metres to spare beside the vehicle", include_str!("../../../../data/styles/permit.qml")]
             }
             Self::Turns => {
-                ["kerb source", "Where each turn's kerb comes from", include_str!("../../../data/styles/turn.qml")]
+                ["kerb source", "Where each turn's kerb comes from", include_str!("../../../../data/styles/turn.qml")]
             }
             Self::Junctions => {
-                ["area", "What roads and corners cover", include_str!("../../../data/styles/junction.qml")]
+                ["area", "What roads and corners cover", include_str!("../../../../data/styles/junction.qml")]
             }
         }
     }
 }
 
 /// Adds the style of a layer and replaces an older one of this program.
-pub(super) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, time: &str) -> Sql<()> {
+pub(crate) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, time: &str) -> Sql<()> {
     remove(c, layer).await?;
     let [name, description, style] = shows.style();
     let sql = "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, f_geometry_column, styleName, \
@@ -58,7 +60,7 @@ pub(super) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, tim
 }
 
 /// Removes the style that this program gave a layer.
-pub(super) async fn remove(c: &mut SqliteConnection, layer: &str) -> Sql<()> {
+pub(crate) async fn remove(c: &mut SqliteConnection, layer: &str) -> Sql<()> {
     let sql = "DELETE FROM layer_styles WHERE f_table_name = ? AND owner = ?";
     sqlx::query(sql).bind(layer).bind(OWNER).execute(c).await?;
     Ok(())

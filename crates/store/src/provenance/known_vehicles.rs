@@ -5,15 +5,15 @@
 
 use std::collections::BTreeMap;
 
-use super::database::Database;
-use super::error::StoreError;
-use super::relative::DRIVABLE_BY;
+use crate::database::Database;
+use crate::error::StoreError;
+use crate::results::relative::DRIVABLE_BY;
 
 /// Where one vehicle is known to go: sorted indices into the network's edges and turns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct KnownVehicle {
-    pub(super) edges: Vec<u32>,
-    pub(super) turns: Vec<u32>,
+pub(crate) struct KnownVehicle {
+    pub(crate) edges: Vec<u32>,
+    pub(crate) turns: Vec<u32>,
 }
 
 impl Database {
@@ -21,7 +21,7 @@ impl Database {
     ///
     /// # Errors
     /// There are none ([`StoreError::NotThere`]); the file cannot be read.
-    pub(super) fn known_vehicles(&mut self) -> Result<BTreeMap<String, KnownVehicle>, StoreError> {
+    pub(crate) fn known_vehicles(&mut self) -> Result<BTreeMap<String, KnownVehicle>, StoreError> {
         let places = |table: &str| {
             format!(
                 "SELECT DISTINCT v.vehicle, t.fid - 1 FROM evidence AS v JOIN evidence_place AS p USING (evidence_no) \

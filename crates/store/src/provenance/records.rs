@@ -5,7 +5,7 @@ use sqlx::sqlite::SqliteConnection;
 
 use crate::account::AccountRow;
 
-use super::bulk::Bulk;
+use crate::file::bulk::Bulk;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -58,7 +58,7 @@ impl Run {
 }
 
 /// Adds a run with its account and returns the run's number.
-pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<i64> {
+pub(crate) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<i64> {
     let run_id: i64 = sqlx::query_scalar("SELECT coalesce(max(run_id), 0) + 1 FROM run").fetch_one(&mut *c).await?;
     sqlx::query("INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .bind(run_id)
@@ -86,7 +86,7 @@ pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[Acco
 }
 
 /// Replaces all runs by one, from which all sets then are.
-pub(super) async fn replace_runs(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<()> {
+pub(crate) async fn replace_runs(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<()> {
     sqlx::query("DELETE FROM account").execute(&mut *c).await?;
     sqlx::query("DELETE FROM run").execute(&mut *c).await?;
     let run_id = add_run(c, run, account).await?;
@@ -98,7 +98,7 @@ pub(super) async fn replace_runs(c: &mut SqliteConnection, run: &Run, account: &
 }
 
 /// Adds a vehicle under a number.
-pub(super) async fn add_vehicle(c: &mut SqliteConnection, number: u32, vehicle: &VehicleRecord) -> Sql<()> {
+pub(crate) async fn add_vehicle(c: &mut SqliteConnection, number: u32, vehicle: &VehicleRecord) -> Sql<()> {
     sqlx::query("INSERT INTO vehicle VALUES (?, ?, ?, ?, ?)")
         .bind(number)
         .bind(&vehicle.id)

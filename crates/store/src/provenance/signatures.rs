@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use sqlx::sqlite::SqliteConnection;
 
-use super::bulk;
-use super::database::Database;
-use super::digest;
-use super::error::StoreError;
+use crate::database::Database;
+use crate::error::StoreError;
+use crate::file::bulk;
+use crate::file::digest;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// The table's name.
-pub(super) const TABLE: &str = "signature";
+pub(crate) const TABLE: &str = "signature";
 
 /// A signature as it is stored. Whoever reads it checks it.
 #[derive(Debug, Clone, PartialEq, Eq)]

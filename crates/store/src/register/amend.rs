@@ -1,5 +1,5 @@
 //! Changes the rows of a database that newer roads change, where no edge and no turn gets another number: an update then costs what changed,
-//! and not what is there. What the rows say is what [`super::Writer::finish`] would write.
+//! and not what is there. What the rows say is what [`crate::Writer::finish`] would write.
 
 use std::rc::Rc;
 
@@ -12,16 +12,16 @@ use crate::osm::LonLat;
 use netcert_roads::turns::{JunctionArea, TurnFacts};
 use netcert_rows::{Bounds, EdgeMeasure};
 
-use super::blob;
-use super::bulk::Bulk;
-use super::error::content;
-use super::gathered::{EdgeRow, NetworkRow, RoadRow, StrokeRow, edge_rows, stroke_rows};
-use super::junctions;
-use super::network_read::rows;
-use super::network_write::{Narrowings, Ranges, Roads, write_edge, write_strokes};
-use super::renewal::{self, PackedRenewal, SetRenewal, Triggers};
-use super::restrictions;
-use super::turns::{self, Record};
+use crate::error::content;
+use crate::file::blob;
+use crate::file::bulk::Bulk;
+use crate::register::renewal::{self, PackedRenewal, SetRenewal, Triggers};
+use crate::results::turns::{self, Record};
+use crate::roads::junctions;
+use crate::roads::network_read::rows;
+use crate::roads::network_rows::{EdgeRow, NetworkRow, RoadRow, StrokeRow, edge_rows, stroke_rows};
+use crate::roads::network_write::{Narrowings, Ranges, Roads, write_edge, write_strokes};
+use crate::roads::restrictions;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -44,7 +44,7 @@ pub struct Amendment<'a> {
 }
 
 /// Writes the network, the turns and the certificates, of which `packed` has those of each set.
-pub(super) async fn write(
+pub(crate) async fn write(
     c: &mut SqliteConnection,
     amendment: &mut Amendment<'_>,
     packed: &[PackedRenewal],

@@ -8,11 +8,11 @@ use crate::words::Named;
 use netcert_evidence::{Columns, Counted, Edges, Entry, Quantity, Row, State, Target, Value, parts, surface};
 use netcert_rows::Bounds;
 
-use super::bulk::Bulk;
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::network_read::{rows, word};
-use super::sets::add_layer_of;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::bulk::Bulk;
+use crate::results::sets::add_layer_of;
+use crate::roads::network_read::{rows, word};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -26,7 +26,7 @@ pub struct Register {
 }
 
 /// Tells one state of a register from all later ones: numbers only grow, and removing lowers the count.
-pub(super) type RegisterState = (i64, i64);
+pub(crate) type RegisterState = (i64, i64);
 
 impl Database {
     /// The register of measurements.
@@ -38,7 +38,7 @@ impl Database {
     }
 }
 
-pub(super) async fn state(c: &mut SqliteConnection) -> Sql<RegisterState> {
+pub(crate) async fn state(c: &mut SqliteConnection) -> Sql<RegisterState> {
     sqlx::query_as(
         "SELECT (SELECT count(*) FROM evidence), coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'evidence'), 0)",
     )
@@ -46,7 +46,7 @@ pub(super) async fn state(c: &mut SqliteConnection) -> Sql<RegisterState> {
     .await
 }
 
-pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Register> {
+pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Register> {
     let (_, last_no) = state(c).await?;
     let mut entries = rows(c, "SELECT * FROM evidence ORDER BY evidence_no", entry).await?;
     let places = "SELECT evidence_no, edge_id, node, from_edge, to_edge, counts, quantity FROM evidence_place \
@@ -130,7 +130,7 @@ fn measured_surface(geom: Option<Vec<u8>>, sigma: f64) -> Option<Counted> {
 }
 
 /// What certificates see of the register.
-pub(super) async fn site(c: &mut SqliteConnection, network: &Network) -> Sql<Site> {
+pub(crate) async fn site(c: &mut SqliteConnection, network: &Network) -> Sql<Site> {
     let sql = "SELECT edge_id, node, from_edge, to_edge, lower, quantity, evidence_no, sigma, geom FROM evidence_place \
                JOIN (SELECT evidence_no, lower, quantity, sigma, geom FROM evidence) USING (evidence_no) WHERE counts \
                ORDER BY place_no";
@@ -156,7 +156,7 @@ pub(super) async fn site(c: &mut SqliteConnection, network: &Network) -> Sql<Sit
 }
 
 /// Writes the register in place of the one that is there. The tables' layer exists exactly if there are measurements.
-pub(super) async fn write(c: &mut SqliteConnection, register: &Register, time: &str) -> Sql<()> {
+pub(crate) async fn write(c: &mut SqliteConnection, register: &Register, time: &str) -> Sql<()> {
     for sql in [
         "DELETE FROM evidence_place",
         "DELETE FROM evidence",

@@ -6,8 +6,8 @@ use crate::network::Network;
 use netcert_roads::turns::TurnFacts;
 use netcert_rows::Measurement;
 
-use super::database::Database;
-use super::error::StoreError;
+use crate::database::Database;
+use crate::error::StoreError;
 
 impl Database {
     /// The measurements that count on an edge, in order of their numbers.

@@ -11,18 +11,20 @@ use crate::verdict::Verdict;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 
-use super::bulk::Bulk;
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::evidence::{self, Register};
-use super::kept::PAGE_ROWS;
-use super::names::{corridor_no, verdict_of};
-use super::network_read::rows;
-use super::network_write::add_widths;
-use super::packed::Packed;
-use super::plans;
-use super::records::{self, Run};
-use super::{junctions, sets, turns};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::bulk::Bulk;
+use crate::provenance::records::{self, Run};
+use crate::register::evidence::{self, Register};
+use crate::results::carry_over::PAGE_ROWS;
+use crate::results::compact::Packed;
+use crate::results::names::{corridor_no, verdict_of};
+use crate::results::plans;
+use crate::results::sets;
+use crate::results::turns;
+use crate::roads::junctions;
+use crate::roads::network_read::rows;
+use crate::roads::network_write::add_widths;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -142,13 +144,13 @@ impl Database {
 }
 
 /// A set's rows, ready to be written.
-pub(super) struct PackedRenewal {
+pub(crate) struct PackedRenewal {
     edges: Vec<Packed>,
     turns: Vec<Packed>,
     turn_plans: Vec<StoredPlan>,
 }
 
-pub(super) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
+pub(crate) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
     let edge = |known: &EdgeCertificate| Packed::edge(known).map_err(|why| unsound(known.edge, why));
@@ -178,7 +180,7 @@ async fn write(c: &mut SqliteConnection, renewal: &mut Renewal<'_>, packed: &[Pa
 }
 
 /// Replaces some certificates of some sets, with their plans.
-pub(super) async fn replace_sets(
+pub(crate) async fn replace_sets(
     c: &mut SqliteConnection,
     sets: &mut [SetRenewal],
     packed: &[PackedRenewal],
@@ -226,10 +228,10 @@ async fn remove(
 
 /// The triggers that keep the spatial index of edges. They call functions that SQLite alone does not have, so they are away while rows
 /// of `edge` are written.
-pub(super) struct Triggers(Vec<(String, String)>);
+pub(crate) struct Triggers(Vec<(String, String)>);
 
 impl Triggers {
-    pub(super) async fn remove(c: &mut SqliteConnection) -> Sql<Self> {
+    pub(crate) async fn remove(c: &mut SqliteConnection) -> Sql<Self> {
         let triggers =
             "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge' ORDER BY rowid";
         let triggers: Vec<(String, String)> = sqlx::query_as(triggers).fetch_all(&mut *c).await?;
@@ -240,7 +242,7 @@ impl Triggers {
         Ok(Self(triggers))
     }
 
-    pub(super) async fn restore(self, c: &mut SqliteConnection) -> Sql<()> {
+    pub(crate) async fn restore(self, c: &mut SqliteConnection) -> Sql<()> {
         for (_, sql) in self.0 {
             sqlx::query(AssertSqlSafe(sql)).persistent(false).execute(&mut *c).await?;
         }

@@ -8,15 +8,15 @@ use crate::osm::facts::Policy;
 use crate::verdict::Verdict;
 use netcert_rows::{EdgeMeasure, StoredPlan};
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{corridor_no, verdict_of};
-use super::packed::Packed;
-use super::writer::{VehicleNo, Writer};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::results::compact::Packed;
+use crate::results::names::{corridor_no, verdict_of};
+use crate::writer::{VehicleNo, Writer};
 
 /// Rows of a set that SQLite hands over as one text. Each row that sqlx hands over by itself costs a microsecond or more: a quarter of a
 /// million rows took 0.6 s.
-pub(super) const PAGE_ROWS: usize = 1000;
+pub(crate) const PAGE_ROWS: usize = 1000;
 
 /// A stored certificate of an edge or a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

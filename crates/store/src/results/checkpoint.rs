@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::error::StoreError;
+use crate::error::StoreError;
 
 const MAGIC: &[u8; 8] = b"netcert1";
 const HEAD_BYTES: u64 = 8 + 32;
@@ -43,7 +43,7 @@ pub struct Finished {
 
 impl Finished {
     /// Opens the file at `path`, or begins it. `identity` stands for everything on which the work depends.
-    pub(super) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
+    pub(crate) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
         let mut finished =
             Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0, stretches: Vec::new() };
@@ -201,8 +201,8 @@ fn check_sum(bytes: &[u8]) -> [u8; 8] {
 }
 
 /// The file of the finished work for a database at `target`.
-pub(super) fn path_of(target: &Path) -> PathBuf {
-    super::part::with_suffix(target, ".done")
+pub(crate) fn path_of(target: &Path) -> PathBuf {
+    crate::file::part::with_suffix(target, ".done")
 }
 
 #[cfg(test)]

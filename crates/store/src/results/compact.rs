@@ -4,29 +4,29 @@
 use crate::verdict::Verdict;
 use netcert_rows::{Conclusion, EdgeCertificate, TurnCertificate};
 
-use super::bulk::Bulk;
-use super::names::verdict_no;
+use crate::file::bulk::Bulk;
+use crate::results::names::verdict_no;
 
 /// A row of `certificate_compact` without vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Packed {
-    pub(super) fid: u32,
-    pub(super) verdict_no: u8,
-    pub(super) rsc_mm: Option<i32>,
-    pub(super) rsc_published_mm: Option<i32>,
-    pub(super) hinge_margin_cdeg: Option<i32>,
-    pub(super) shrink_milli: Option<u16>,
-    pub(super) limiting_s_dm: Option<u32>,
-    pub(super) limiting_at: Option<u16>,
+pub(crate) struct Packed {
+    pub(crate) fid: u32,
+    pub(crate) verdict_no: u8,
+    pub(crate) rsc_mm: Option<i32>,
+    pub(crate) rsc_published_mm: Option<i32>,
+    pub(crate) hinge_margin_cdeg: Option<i32>,
+    pub(crate) shrink_milli: Option<u16>,
+    pub(crate) limiting_s_dm: Option<u32>,
+    pub(crate) limiting_at: Option<u16>,
     /// What would be enough, centimetres: an edge's width; a turn's kerb radius, and the width of both its roads.
-    pub(super) needs_cm: [Option<u16>; 2],
+    pub(crate) needs_cm: [Option<u16>; 2],
     /// The code of the path, for turns only.
-    pub(super) path_no: Option<i64>,
+    pub(crate) path_no: Option<i64>,
 }
 
 impl Packed {
     /// Adds the columns that certificates of edges and turns have in common, from `fid` on.
-    pub(super) fn add_to(&self, bulk: &mut Bulk) {
+    pub(crate) fn add_to(&self, bulk: &mut Bulk) {
         bulk.add(self.fid);
         bulk.add(self.verdict_no);
         bulk.add(self.rsc_mm);
@@ -41,19 +41,19 @@ impl Packed {
 
 impl Packed {
     /// Packs the certificate of an edge. The error says why it may not be stored.
-    pub(super) fn edge(certificate: &EdgeCertificate) -> Result<Self, String> {
+    pub(crate) fn edge(certificate: &EdgeCertificate) -> Result<Self, String> {
         let needs_cm = [need_cm(certificate.need_width_m), None];
         Ok(Self { needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.edge)? })
     }
 
     /// Packs the certificate of a turn. The error says why it may not be stored.
-    pub(super) fn turn(certificate: &TurnCertificate) -> Result<Self, String> {
+    pub(crate) fn turn(certificate: &TurnCertificate) -> Result<Self, String> {
         let needs_cm = [certificate.need.kerb_radius_m, certificate.need.flare_m].map(need_cm);
         Ok(Self { path_no: certificate.path, needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.turn)? })
     }
 
     /// Packs the conclusion of the edge or turn with this index.
-    pub(super) fn conclusion(conclusion: &Conclusion, index: u32) -> Result<Self, String> {
+    pub(crate) fn conclusion(conclusion: &Conclusion, index: u32) -> Result<Self, String> {
         let verdict_no = verdict_no(conclusion.verdict).ok_or("its verdict has no number")?;
         let fid = index.checked_add(1).ok_or("its index is out of range")?;
         let mut packed = Self {

@@ -6,7 +6,7 @@ use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::VerdictKind;
 
 /// Every verdict and its number in the database. Numbers are never reused. A kind has ten numbers, and ten more from 50 on.
-pub(super) const VERDICTS: &[(u8, Verdict)] = &[
+pub(crate) const VERDICTS: &[(u8, Verdict)] = &[
     (SAFE, Verdict::Safe),
     (10, Verdict::Unsafe(UnsafeReason::Width)),
     (11, Verdict::Unsafe(UnsafeReason::Articulation)),
@@ -35,26 +35,26 @@ pub(super) const VERDICTS: &[(u8, Verdict)] = &[
 ];
 
 /// The condition that `column` has a number of a kind.
-pub(super) fn of_kind(column: &str, kind: VerdictKind) -> String {
+pub(crate) fn of_kind(column: &str, kind: VerdictKind) -> String {
     let first = 10 * kind as u8;
     format!("{column} % 50 BETWEEN {first} AND {}", first + 9)
 }
 
 /// The number of [`Verdict::Safe`]. The views in `migrations/` use this number.
-pub(super) const SAFE: u8 = 0;
+pub(crate) const SAFE: u8 = 0;
 
 /// The number of a verdict. `None` if [`VERDICTS`] lacks the verdict, which a test rules out.
-pub(super) fn verdict_no(verdict: Verdict) -> Option<u8> {
+pub(crate) fn verdict_no(verdict: Verdict) -> Option<u8> {
     VERDICTS.iter().find(|row| row.1 == verdict).map(|row| row.0)
 }
 
 /// The verdict with this number.
-pub(super) fn verdict_of(no: i64) -> Option<Verdict> {
+pub(crate) fn verdict_of(no: i64) -> Option<Verdict> {
     VERDICTS.iter().find(|row| i64::from(row.0) == no).map(|row| row.1)
 }
 
 /// The columns of `edge` that belong to a policy: the width and its source.
-pub(super) const fn width_columns(policy: Policy) -> [&'static str; 2] {
+pub(crate) const fn width_columns(policy: Policy) -> [&'static str; 2] {
     match policy {
         Policy::Lane => ["lane_width_m", "width_source"],
         Policy::Direction => ["direction_width_m", "direction_width_source"],
@@ -63,7 +63,7 @@ pub(super) const fn width_columns(policy: Policy) -> [&'static str; 2] {
 }
 
 /// The number of a policy in the database, which is its index in [`Policy::ALL`].
-pub(super) fn corridor_no(policy: Policy) -> u8 {
+pub(crate) fn corridor_no(policy: Policy) -> u8 {
     policy as u8
 }
 

@@ -9,26 +9,26 @@ use sqlx::sqlite::SqliteConnection;
 use crate::osm::facts::Policy;
 use netcert_rows::{StoredPlan, unpack};
 
-use super::bulk::Bulk;
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::corridor_no;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::bulk::Bulk;
+use crate::results::names::corridor_no;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// The table of plans of strokes, with its columns.
-pub(super) const STROKES: &str = "plan (vehicle_no, corridor_no, fid, coefficients)";
+pub(crate) const STROKES: &str = "plan (vehicle_no, corridor_no, fid, coefficients)";
 /// The table of plans of turns, with its columns.
-pub(super) const TURNS: &str = "turn_plan (vehicle_no, corridor_no, fid, coefficients)";
+pub(crate) const TURNS: &str = "turn_plan (vehicle_no, corridor_no, fid, coefficients)";
 
 /// Sorts the plans of a set by edge or turn.
-pub(super) fn sorted(plans: &mut [StoredPlan]) -> impl Iterator<Item = io::Result<StoredPlan>> {
+pub(crate) fn sorted(plans: &mut [StoredPlan]) -> impl Iterator<Item = io::Result<StoredPlan>> {
     plans.sort_unstable_by_key(|plan| plan.at);
     plans.iter().cloned().map(Ok)
 }
 
 /// Inserts plans of a set, which are sorted by edge or turn.
-pub(super) async fn insert(
+pub(crate) async fn insert(
     c: &mut SqliteConnection,
     into: &'static str,
     (vehicle_no, corridor): (u32, u8),
@@ -71,7 +71,7 @@ impl Database {
     }
 
     /// The plans of a table as they are stored, by index of the edge or turn.
-    pub(super) fn packed_plans(
+    pub(crate) fn packed_plans(
         &mut self,
         table: &'static str,
         vehicle: &str,

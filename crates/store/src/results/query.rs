@@ -14,11 +14,11 @@ use crate::osm::facts::{Policy, WidthSource};
 use crate::words::{Named, VerdictKind};
 use netcert_rows::{Bounds, EdgeRow};
 
-use super::database::Database;
-use super::error::StoreError;
-use super::names::{corridor_no, of_kind, width_columns};
-use super::network_read::{line, word, word_or_none};
-use super::numbers;
+use crate::database::Database;
+use crate::error::StoreError;
+use crate::results::names::{corridor_no, of_kind, width_columns};
+use crate::results::numbers;
+use crate::roads::network_read::{line, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -123,7 +123,7 @@ impl Database {
     }
 }
 
-pub(super) fn polygons(area: &Area) -> geo::MultiPolygon {
+pub(crate) fn polygons(area: &Area) -> geo::MultiPolygon {
     let rect = |west, south, east, north| geo::Rect::new((west, south), (east, north)).to_polygon();
     match area {
         Area::Polygons(polygons) => polygons.clone(),

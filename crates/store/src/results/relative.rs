@@ -20,13 +20,13 @@ use crate::words::Named as _;
 use netcert_rows::settings::Settings;
 use netcert_rows::{Relative, RelativeCount, Standing};
 
-use super::database::Database;
-use super::error::StoreError;
-use super::known_vehicles::KnownVehicle;
-use super::names::verdict_no;
-use super::network_read::verdict;
-use super::settings::CertifiedSet;
-use super::stream::Streamed;
+use crate::database::Database;
+use crate::error::StoreError;
+use crate::provenance::known_vehicles::KnownVehicle;
+use crate::results::names::verdict_no;
+use crate::results::settings::CertifiedSet;
+use crate::results::stream::Streamed;
+use crate::roads::network_read::verdict;
 
 type Sql<T> = Result<T, sqlx::Error>;
 

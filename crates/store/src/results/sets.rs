@@ -9,10 +9,10 @@ use crate::osm::facts::Policy;
 use crate::words::Named;
 use netcert_rows::Bounds;
 
-use super::bulk::Bulk;
-use super::names::{SAFE, corridor_no, width_columns};
-use super::packed::Packed;
-use super::styles::{self, Shows};
+use crate::file::bulk::Bulk;
+use crate::file::styles::{self, Shows};
+use crate::results::compact::Packed;
+use crate::results::names::{SAFE, corridor_no, width_columns};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -20,28 +20,28 @@ const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdic
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, need_cm)";
 
 /// Why a set may not be stored: an edge or turn, and what is wrong with it.
-pub(super) type Fault = (u32, &'static str);
+pub(crate) type Fault = (u32, &'static str);
 
 /// Checks that the rows, sorted by edge, have every edge exactly once.
-pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), Fault> {
+pub(crate) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), Fault> {
     let mut complete = Complete::new(edges);
     rows.iter().for_each(|row| complete.look_at(row));
     complete.finish().map(|_| ())
 }
 
 /// Looks at the rows of a set in order, to find whether every edge is there exactly once.
-pub(super) struct Complete {
+pub(crate) struct Complete {
     edges: u32,
     rows: u32,
     fault: Option<Fault>,
 }
 
 impl Complete {
-    pub(super) fn new(edges: u32) -> Self {
+    pub(crate) fn new(edges: u32) -> Self {
         Self { edges, rows: 0, fault: None }
     }
 
-    pub(super) fn look_at(&mut self, row: &Packed) {
+    pub(crate) fn look_at(&mut self, row: &Packed) {
         self.rows += 1;
         if row.fid != self.rows && self.fault.is_none() {
             let twice = row.fid < self.rows;
@@ -52,7 +52,7 @@ impl Complete {
     }
 
     /// The number of rows.
-    pub(super) fn finish(self) -> Result<u32, Fault> {
+    pub(crate) fn finish(self) -> Result<u32, Fault> {
         match self.fault {
             Some(fault) => Err(fault),
             None if self.rows < self.edges => Err((self.rows, "it has no certificate")),
@@ -63,7 +63,7 @@ impl Complete {
 }
 
 /// Inserts certificates of edges.
-pub(super) async fn insert_rows(
+pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
     rows: impl Iterator<Item = io::Result<Packed>>,
@@ -80,22 +80,22 @@ pub(super) async fn insert_rows(
 }
 
 /// A set to insert: its vehicle, policy and run.
-pub(super) struct Set<'a> {
-    pub(super) vehicle_no: u32,
-    pub(super) vehicle_id: &'a str,
-    pub(super) vehicle_name: &'a str,
-    pub(super) policy: Policy,
-    pub(super) run_id: i64,
+pub(crate) struct Set<'a> {
+    pub(crate) vehicle_no: u32,
+    pub(crate) vehicle_id: &'a str,
+    pub(crate) vehicle_name: &'a str,
+    pub(crate) policy: Policy,
+    pub(crate) run_id: i64,
     /// Time stamp of the layer.
-    pub(super) time: &'a str,
+    pub(crate) time: &'a str,
     /// The settings as text, from [`netcert_rows::settings::Settings::written`].
-    pub(super) settings: &'a str,
+    pub(crate) settings: &'a str,
 }
 
 impl Set<'_> {
     /// Inserts the rows of all edges and registers their layer. The database must not have the set yet. After a fault, what was inserted
     /// must be thrown away.
-    pub(super) async fn insert(
+    pub(crate) async fn insert(
         &self,
         c: &mut SqliteConnection,
         rows: impl Iterator<Item = io::Result<Packed>>,
@@ -172,7 +172,7 @@ async fn network_bounds(c: &mut SqliteConnection) -> Sql<Option<Bounds>> {
 }
 
 /// Registers a table or view of lines as a layer.
-pub(super) async fn add_layer(
+pub(crate) async fn add_layer(
     c: &mut SqliteConnection,
     table: &str,
     description: &str,
@@ -183,7 +183,7 @@ pub(super) async fn add_layer(
 }
 
 /// Registers a table or view as a layer of geometries of a type.
-pub(super) async fn add_layer_of(
+pub(crate) async fn add_layer_of(
     c: &mut SqliteConnection,
     (table, geometries): (&str, &str),
     description: &str,
@@ -210,9 +210,9 @@ pub(super) async fn add_layer_of(
 }
 
 /// Removes a set with its turns and its layer.
-pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+pub(crate) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
     // Certificates of turns depend on the verdicts of edges.
-    super::turns::remove(c, vehicle_no, corridor_no).await?;
+    crate::results::turns::remove(c, vehicle_no, corridor_no).await?;
     let layer: Option<String> =
         sqlx::query_scalar("SELECT layer FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?")
             .bind(vehicle_no)

@@ -11,9 +11,9 @@ use crate::osm::facts::Policy;
 use crate::words::Named;
 use netcert_rows::settings::Settings;
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::network_read::word;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::roads::network_read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -114,7 +114,7 @@ async fn kept_by_ingest(c: &mut SqliteConnection) -> Sql<String> {
 }
 
 /// Writes the only row of `network_settings`.
-pub(super) async fn keep(c: &mut SqliteConnection, settings: &str) -> Sql<()> {
+pub(crate) async fn keep(c: &mut SqliteConnection, settings: &str) -> Sql<()> {
     sqlx::query("INSERT INTO network_settings VALUES (?)").bind(settings).execute(c).await?;
     Ok(())
 }

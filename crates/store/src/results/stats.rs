@@ -8,11 +8,11 @@ use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named;
 use netcert_rows::{NeedCount, Stats, StatsRow};
 
-use super::database::Database;
-use super::error::StoreError;
-use super::names::verdict_no;
-use super::network_read::{verdict, word, word_or_none};
-use super::turns;
+use crate::database::Database;
+use crate::error::StoreError;
+use crate::results::names::verdict_no;
+use crate::results::turns;
+use crate::roads::network_read::{verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

@@ -13,12 +13,12 @@ use tokio::runtime::Runtime;
 use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
-use super::blob;
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{corridor_no, width_columns};
-use super::network_read::{verdict, word, word_or_none};
-use super::turns::{self, TurnQuery};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::blob;
+use crate::results::names::{corridor_no, width_columns};
+use crate::results::turns::{self, TurnQuery};
+use crate::roads::network_read::{verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -126,12 +126,12 @@ impl Database {
     }
 
     /// The rows of a statement without parameters.
-    pub(super) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
+    pub(crate) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
         let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
         Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 
-    pub(super) fn streamed<T>(
+    pub(crate) fn streamed<T>(
         &mut self,
         sql: String,
         vehicle: &str,

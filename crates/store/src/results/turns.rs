@@ -14,19 +14,19 @@ use crate::words::VerdictKind;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 
-use super::blob;
-use super::bulk::{Bulk, Takes};
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::junctions;
-use super::names::{corridor_no, of_kind};
-use super::network_read::{line, verdict, word};
-use super::numbers::{self, centimetres};
-use super::packed::Packed;
-use super::plans;
-use super::query::{Area, polygons};
-use super::sets::{self, Complete, Fault};
-use super::styles::{self, Shows};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::blob;
+use crate::file::bulk::{Bulk, Takes};
+use crate::file::styles::{self, Shows};
+use crate::results::compact::Packed;
+use crate::results::names::{corridor_no, of_kind};
+use crate::results::numbers::{self, centimetres};
+use crate::results::plans;
+use crate::results::query::{Area, polygons};
+use crate::results::sets::{self, Complete, Fault};
+use crate::roads::junctions;
+use crate::roads::network_read::{line, verdict, word};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -47,14 +47,14 @@ pub struct TurnSet<'a> {
 }
 
 /// A packed set: rows in order, and the plans that the certificates were made for.
-pub(super) struct PackedSet {
-    pub(super) rows: Vec<Packed>,
-    pub(super) plans: Vec<StoredPlan>,
+pub(crate) struct PackedSet {
+    pub(crate) rows: Vec<Packed>,
+    pub(crate) plans: Vec<StoredPlan>,
 }
 
 impl TurnSet<'_> {
     /// Packs the set. The error names a turn whose certificate is missing or whose numbers do not support its verdict.
-    pub(super) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
+    pub(crate) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
         let pack = |turn: &TurnCertificate| Packed::turn(turn).map_err(|why| (turn.turn, why));
         let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
@@ -66,7 +66,7 @@ impl TurnSet<'_> {
 
 /// A turn with all that its row says: it can be written without the network.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(super) struct Record {
+pub(crate) struct Record {
     /// With indices of edges of the whole network, and no index of a restriction.
     facts: TurnFacts,
     via_node: i64,
@@ -77,11 +77,11 @@ pub(super) struct Record {
 
 /// The place of a turn in the order of the whole network ([`netcert_roads::turns::turn_facts`]): passages last, then by node, by edge before and by
 /// edge after. Passages have no node.
-pub(super) type TurnKey = (bool, i64, u32, u32);
+pub(crate) type TurnKey = (bool, i64, u32, u32);
 
 impl Record {
     /// The record of a turn of a network. `number` returns the number of an edge in the whole network.
-    pub(super) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(u32) -> u32) -> Self {
+    pub(crate) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(u32) -> u32) -> Self {
         let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
         let restriction = forbids.map(|restriction| restriction.kind.name());
@@ -92,7 +92,7 @@ impl Record {
         Self { facts: TurnFacts { movement, through, ..facts.clone() }, via_node, restriction, passage }
     }
 
-    pub(super) fn key(&self) -> TurnKey {
+    pub(crate) fn key(&self) -> TurnKey {
         let Movement { from, to, .. } = self.facts.movement;
         let passage = !self.facts.through.is_empty();
         (passage, if passage { 0 } else { self.via_node }, from, to)
@@ -113,7 +113,7 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
 }
 
 /// Writes turns into the table `turn` and returns the box around them. Each comes with its index in the order of the whole network.
-pub(super) async fn write(
+pub(crate) async fn write(
     to: &mut impl Takes,
     turns: impl Iterator<Item = io::Result<(u32, Record)>>,
 ) -> Sql<Option<Bounds>> {
@@ -144,13 +144,13 @@ pub(super) async fn write(
 }
 
 /// Registers the turns as a layer.
-pub(super) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
+pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
     sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;
     styles::add(c, "turn", Shows::Turns, time).await
 }
 
 /// Inserts certificates of turns.
-pub(super) async fn insert_rows(
+pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
     rows: impl Iterator<Item = io::Result<Packed>>,
@@ -170,7 +170,7 @@ pub(super) async fn insert_rows(
 
 /// Inserts a set with the certificates of this number of turns. The database must not have the set yet. After a fault, what was inserted
 /// must be thrown away.
-pub(super) async fn insert(
+pub(crate) async fn insert(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
     rows: impl Iterator<Item = io::Result<Packed>>,
@@ -192,7 +192,7 @@ pub(super) async fn insert(
 }
 
 /// Removes a set, if there is one.
-pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+pub(crate) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
     for table in ["certified_turns", "turn_plan", "turn_certificate_compact"] {
         let sql = format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ?");
         sqlx::query(AssertSqlSafe(sql)).bind(vehicle_no).bind(corridor_no).execute(&mut *c).await?;
@@ -264,7 +264,7 @@ impl Database {
 
 /// Inserts a vehicle's certificates of turns, and the turns themselves if the database has none yet. The database must not
 /// have certificates of turns for this vehicle and policy.
-pub(super) async fn insert_set(
+pub(crate) async fn insert_set(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
     set: &TurnSet<'_>,
@@ -296,7 +296,7 @@ async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow
 }
 
 /// The statement of a query, whose rows [`turn_row`] reads. The caller binds the corridor's number and the vehicle's id.
-pub(super) fn statement(options: &TurnQuery) -> String {
+pub(crate) fn statement(options: &TurnQuery) -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
                    (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
@@ -321,7 +321,7 @@ pub(super) fn statement(options: &TurnQuery) -> String {
     sql + " ORDER BY c.fid"
 }
 
-pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
+pub(crate) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     let fid: u32 = row.try_get(0)?;
     Ok(TurnRow {
         turn: fid.saturating_sub(1),
@@ -346,7 +346,7 @@ pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
 }
 
 /// The number of turns by vehicle, policy and verdict.
-pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
+pub(crate) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
     let sql = "SELECT vehicle_id, corridor, verdict_no, n FROM (SELECT vehicle_no, corridor_no, verdict_no, count(*) AS n \
                FROM turn_certificate_compact GROUP BY vehicle_no, corridor_no, verdict_no) JOIN vehicle USING (vehicle_no) \
                JOIN corridor USING (corridor_no) ORDER BY vehicle_no, corridor_no, verdict_no";

@@ -7,39 +7,39 @@ use std::path::Path;
 
 use netcert_rows::StoredPlan;
 
-use super::packed::Packed;
-use super::part::sorter;
+use crate::file::part::sorter;
+use crate::results::compact::Packed;
 use netcert_files::sorter::{Sorted, Sorter};
 
 /// Vehicle number and corridor number.
-pub(super) type SetNo = (u32, u8);
+pub(crate) type SetNo = (u32, u8);
 
 /// Set, and index of the edge or turn.
 type Key = (u32, u8, u32);
 
 /// Certificates of edges or of turns, with their plans.
-pub(super) struct Waiting {
+pub(crate) struct Waiting {
     certificates: Sorter<Key, Packed>,
     plans: Sorter<Key, StoredPlan>,
 }
 
 impl Waiting {
     /// Nothing waits yet. Temporary files are made at `path` with a word after it.
-    pub(super) fn create(path: &Path) -> io::Result<Self> {
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
         let certificates = sorter(path, "-certificates")?;
         Ok(Self { certificates, plans: sorter(path, "-plans")? })
     }
 
-    pub(super) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: Packed) -> io::Result<()> {
+    pub(crate) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: Packed) -> io::Result<()> {
         self.certificates.push((vehicle, corridor, packed.fid), &packed)
     }
 
-    pub(super) fn plan(&mut self, (vehicle, corridor): SetNo, plan: &StoredPlan) -> io::Result<()> {
+    pub(crate) fn plan(&mut self, (vehicle, corridor): SetNo, plan: &StoredPlan) -> io::Result<()> {
         self.plans.push((vehicle, corridor, plan.at), plan)
     }
 
     /// The same with other indices. Temporary files are made at `path` with a word after it.
-    pub(super) fn renumbered(self, path: &Path, numbers: &[u32]) -> io::Result<Self> {
+    pub(crate) fn renumbered(self, path: &Path, numbers: &[u32]) -> io::Result<Self> {
         let mut new = Self::create(path)?;
         let number = |index: u32| {
             let number = numbers.get(index as usize).copied();
@@ -57,13 +57,13 @@ impl Waiting {
     }
 
     /// Certificates and plans, each set by set.
-    pub(super) fn sorted(self) -> io::Result<(BySet<Packed>, BySet<StoredPlan>)> {
+    pub(crate) fn sorted(self) -> io::Result<(BySet<Packed>, BySet<StoredPlan>)> {
         Ok((BySet(self.certificates.sorted()?.peekable()), BySet(self.plans.sorted()?.peekable())))
     }
 }
 
 /// Rows of sets, one set after the other.
-pub(super) struct BySet<T>(Peekable<Sorted<Key, T>>)
+pub(crate) struct BySet<T>(Peekable<Sorted<Key, T>>)
 where
     Sorted<Key, T>: Iterator<Item = io::Result<(Key, T)>>;
 
@@ -72,7 +72,7 @@ where
     Sorted<Key, T>: Iterator<Item = io::Result<(Key, T)>>,
 {
     /// The set of the next row. `None` if there is none.
-    pub(super) fn next_set(&mut self) -> io::Result<Option<SetNo>> {
+    pub(crate) fn next_set(&mut self) -> io::Result<Option<SetNo>> {
         let set =
             self.0.peek().and_then(|row| row.as_ref().ok()).map(|((vehicle, corridor, _), _)| (*vehicle, *corridor));
         match set {
@@ -82,7 +82,7 @@ where
     }
 
     /// The rows that come next, as long as they are of a set.
-    pub(super) fn of(&mut self, set: SetNo) -> impl Iterator<Item = io::Result<T>> {
+    pub(crate) fn of(&mut self, set: SetNo) -> impl Iterator<Item = io::Result<T>> {
         let next =
             move || self.0.next_if(|row| row.as_ref().is_ok_and(|((v, c, _), _)| (*v, *c) == set) || row.is_err());
         std::iter::from_fn(next).map(|row| row.map(|(_, row)| row))

@@ -7,17 +7,17 @@ use crate::network::Area;
 use crate::osm::facts::{AreaKind, RoadClass};
 use crate::words::Named;
 
-use super::blob;
-use super::bulk::Bulk;
-use super::error::content;
-use super::network_read::{line, rows};
+use crate::error::content;
+use crate::file::blob;
+use crate::file::bulk::Bulk;
+use crate::roads::network_read::{line, rows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 const ISLAND: &str = "island";
 
 /// Inserts the areas.
-pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
+pub(crate) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
     let mut bulk = Bulk::new("area", 4);
     for (no, area) in (1_i64..).zip(areas) {
         let (geom, _) = blob::encode(area.ring.iter().copied()).ok_or_else(|| content("an area has no shape"))?;
@@ -34,13 +34,13 @@ pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> 
 }
 
 /// Replaces all areas.
-pub(super) async fn replace(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
     sqlx::query("DELETE FROM area").execute(&mut *c).await?;
     insert(c, areas).await
 }
 
 /// Reads all areas.
-pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Vec<Area>> {
+pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Vec<Area>> {
     rows(c, "SELECT way_id, kind, geom FROM area ORDER BY area_no", |row| {
         let way_id: i64 = row.try_get(0)?;
         let kind = match row.try_get(1)? {

@@ -13,11 +13,11 @@ use rustc_hash::FxHashMap;
 use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row as _};
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::verdict_no;
-use super::network_read::{self, RuleSets};
+use crate::database::Database;
+use crate::error::{StoreError, content};
 use crate::osm::facts::{At, Legal};
+use crate::results::names::verdict_no;
+use crate::roads::network_read::{self, RuleSets};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
 use netcert_rows::Rings;

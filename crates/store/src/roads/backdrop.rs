@@ -11,11 +11,11 @@ use crate::osm::{Backdrop, BackdropShape};
 use crate::words::Named as _;
 use netcert_rows::{Bounds, MapBackdrop};
 
-use super::blob;
-use super::bulk::Bulk;
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::network_read::word;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::blob;
+use crate::file::bulk::Bulk;
+use crate::roads::network_read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -61,13 +61,13 @@ fn map_backdrop(row: &SqliteRow) -> Sql<MapBackdrop> {
 }
 
 /// Replaces everything.
-pub(super) async fn replace(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
     sqlx::query("DELETE FROM backdrop").execute(&mut *c).await?;
     sqlx::query("DELETE FROM rtree_backdrop_geom").execute(&mut *c).await?;
     insert(c, things).await
 }
 
-pub(super) async fn insert(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
+pub(crate) async fn insert(c: &mut SqliteConnection, things: impl Iterator<Item = io::Result<Backdrop>>) -> Sql<()> {
     let mut rows = Bulk::new("backdrop", 5);
     let mut boxes = Bulk::new("rtree_backdrop_geom", 6);
     for (fid, thing) in (1_i64..).zip(things) {

@@ -9,13 +9,13 @@ use crate::osm::LonLat;
 use netcert_roads::turns::{JunctionArea, KerbSource};
 use netcert_rows::Bounds;
 
-use super::blob;
-use super::bulk::{Bulk, Takes};
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::network_read::rows;
-use super::sets;
-use super::styles::{self, Shows};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::file::blob;
+use crate::file::bulk::{Bulk, Takes};
+use crate::file::styles::{self, Shows};
+use crate::results::sets;
+use crate::roads::network_read::rows;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -64,13 +64,13 @@ impl Database {
 }
 
 /// Registers the areas as a layer.
-pub(super) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
+pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
     sets::add_layer_of(c, ("junction", "MULTIPOLYGON"), "Areas of junctions", time, bounds).await?;
     styles::add(c, "junction", Shows::Junctions, time).await
 }
 
 /// Replaces the areas at some nodes. A node without a new area has none any more.
-pub(super) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[JunctionArea]) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[JunctionArea]) -> Sql<()> {
     for node in nodes {
         sqlx::query("DELETE FROM junction WHERE node_id = ?").bind(node).execute(&mut *c).await?;
     }
@@ -78,7 +78,7 @@ pub(super) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[Ju
 }
 
 /// Writes areas and returns the box around them.
-pub(super) async fn insert(
+pub(crate) async fn insert(
     to: &mut impl Takes,
     areas: impl Iterator<Item = io::Result<JunctionArea>>,
 ) -> Sql<Option<Bounds>> {

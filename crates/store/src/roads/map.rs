@@ -10,11 +10,11 @@ use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named;
 use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin};
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{corridor_no, width_columns};
-use super::network_read::{line, verdict, word, word_or_none};
-use super::numbers;
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::results::names::{corridor_no, width_columns};
+use crate::results::numbers;
+use crate::roads::network_read::{line, verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

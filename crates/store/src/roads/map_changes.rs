@@ -9,8 +9,8 @@ use sqlx::sqlite::SqliteConnection;
 
 use crate::osm::changes::Changes;
 
-use super::database::Database;
-use super::error::{StoreError, content};
+use crate::database::Database;
+use crate::error::{StoreError, content};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -46,12 +46,12 @@ impl Database {
 }
 
 /// Replaces what was applied before.
-pub(super) async fn replace(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
     sqlx::query("DELETE FROM map_change").execute(&mut *c).await?;
     insert(c, made).await
 }
 
-pub(super) async fn insert(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
+pub(crate) async fn insert(c: &mut SqliteConnection, made: &MapChanges) -> Sql<()> {
     if *made == MapChanges::default() {
         return Ok(());
     }

@@ -15,17 +15,17 @@ use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
 use crate::words::Named;
 
-use super::areas;
-use super::blob;
-use super::error::content;
-use super::evidence;
-use super::names::verdict_of;
-use super::restrictions::{self, Restrictions};
+use crate::error::content;
+use crate::file::blob;
+use crate::register::evidence;
+use crate::results::names::verdict_of;
+use crate::roads::areas;
+use crate::roads::restrictions::{self, Restrictions};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// Reads the whole network.
-pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
+pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let sections = rows(c, "SELECT * FROM section ORDER BY section_no", |row| section(row, 1)).await?;
     let mut sets = RuleSets::default();
     let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1, [9, 10], &mut sets)).await?;
@@ -79,7 +79,7 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     Ok(network)
 }
 
-pub(super) async fn rows<T>(
+pub(crate) async fn rows<T>(
     c: &mut SqliteConnection,
     sql: &'static str,
     mut read: impl FnMut(&SqliteRow) -> Sql<T>,
@@ -101,12 +101,12 @@ fn check_ranges(network: &Network) -> Sql<()> {
     if edges && strokes { Ok(()) } else { Err(content("a narrow place or stroke points outside its table")) }
 }
 
-pub(super) fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
+pub(crate) fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
     Ok(row.try_get(column)?..row.try_get(column + 1)?)
 }
 
 /// The index of a number that counts from 1 in the database. The index must be below `length`.
-pub(super) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
+pub(crate) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
     let number: i64 = row.try_get(column)?;
     let index = number.checked_sub(1).and_then(|index| u32::try_from(index).ok());
     index
@@ -115,24 +115,24 @@ pub(super) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
 }
 
 /// The value of the word in a column.
-pub(super) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
+pub(crate) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
     let word: &str = row.try_get(column)?;
     T::named(word).ok_or_else(|| content(format!("`{word}` is not a word that netcert writes")))
 }
 
 /// The value of the word in a column, or `None` for null.
-pub(super) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
+pub(crate) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
     if row.try_get::<Option<&str>, _>(column)?.is_none() { Ok(None) } else { word(row, column).map(Some) }
 }
 
 /// The verdict of the number in a column; `of` names the row in errors.
-pub(super) fn verdict(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Verdict> {
+pub(crate) fn verdict(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Verdict> {
     let number: i64 = row.try_get(column)?;
     verdict_of(number).ok_or_else(|| content(format!("verdict {number} of {}", of())))
 }
 
 /// The positions of the geometry in a column; `of` names the row in errors.
-pub(super) fn line(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Vec<LonLat>> {
+pub(crate) fn line(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Vec<LonLat>> {
     blob::decode(row.try_get(column)?).ok_or_else(|| content(format!("the geometry of {}", of())))
 }
 
@@ -154,7 +154,7 @@ fn section(row: &SqliteRow, column: usize) -> Sql<CrossSection> {
 }
 
 /// Sets of rules by their text, each read once.
-pub(super) type RuleSets = FxHashMap<String, RuleSet>;
+pub(crate) type RuleSets = FxHashMap<String, RuleSet>;
 
 /// The set of rules in a column.
 fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<RuleSet>> {
@@ -168,7 +168,7 @@ fn rule_set(row: &SqliteRow, column: usize, sets: &mut RuleSets) -> Sql<Option<R
 }
 
 /// Limits and access in a row: the limits from `column` on, the rules and the tags in the columns named.
-pub(super) fn legal(row: &SqliteRow, column: usize, [rules, tags]: [usize; 2], sets: &mut RuleSets) -> Sql<Legal> {
+pub(crate) fn legal(row: &SqliteRow, column: usize, [rules, tags]: [usize; 2], sets: &mut RuleSets) -> Sql<Legal> {
     let unreadable: Option<&str> = row.try_get(column + 5)?;
     let limit = |at: usize, name: &str| -> Sql<Limit> {
         if unreadable.is_some_and(|names| names.split(',').any(|other| other == name)) {
@@ -190,7 +190,7 @@ pub(super) fn legal(row: &SqliteRow, column: usize, [rules, tags]: [usize; 2], s
 }
 
 /// The country code in a column.
-pub(super) fn country(row: &SqliteRow, column: usize) -> Sql<[u8; 2]> {
+pub(crate) fn country(row: &SqliteRow, column: usize) -> Sql<[u8; 2]> {
     let country: &str = row.try_get(column)?;
     country.as_bytes().try_into().map_err(|_| content(format!("`{country}` is no country code")))
 }

@@ -12,55 +12,55 @@ use crate::osm::facts::{BackdropKind, CrossSection};
 use crate::osm::{Backdrop, LonLat};
 use netcert_rows::EdgeMeasure;
 
-use super::part::sorter;
+use crate::file::part::sorter;
 use netcert_files::sorter::Sorter;
 
 /// A road with its texts. `road` has none of them.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(super) struct RoadRow {
-    pub(super) road: Road,
-    pub(super) name: Option<String>,
-    pub(super) reference: Option<String>,
+pub(crate) struct RoadRow {
+    pub(crate) road: Road,
+    pub(crate) name: Option<String>,
+    pub(crate) reference: Option<String>,
 }
 
 /// A directed edge. `edge` has no road and no ranges.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(super) struct EdgeRow {
-    pub(super) edge: Edge,
+pub(crate) struct EdgeRow {
+    pub(crate) edge: Edge,
     /// The edge's road, as an index into the whole network.
-    pub(super) road: u32,
+    pub(crate) road: u32,
     /// Positions of its way before the edge's shape.
-    pub(super) place: u32,
+    pub(crate) place: u32,
     /// Positions in way order.
-    pub(super) shape: Vec<LonLat>,
-    pub(super) narrowings: Vec<Narrowing>,
-    pub(super) section: CrossSection,
-    pub(super) measure: EdgeMeasure,
+    pub(crate) shape: Vec<LonLat>,
+    pub(crate) narrowings: Vec<Narrowing>,
+    pub(crate) section: CrossSection,
+    pub(crate) measure: EdgeMeasure,
 }
 
 /// A stroke: edges of the whole network, in driving order.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(super) struct StrokeRow {
-    pub(super) approach: Vec<u32>,
-    pub(super) edges: Vec<u32>,
-    pub(super) closed: bool,
+pub(crate) struct StrokeRow {
+    pub(crate) approach: Vec<u32>,
+    pub(crate) edges: Vec<u32>,
+    pub(crate) closed: bool,
 }
 
 /// The rows of a network by their indices in it; strokes by their first edge.
-pub(super) struct NetworkRows {
-    pub(super) roads: Sorter<u32, RoadRow>,
-    pub(super) edges: Sorter<u32, EdgeRow>,
-    pub(super) strokes: Sorter<u32, StrokeRow>,
+pub(crate) struct NetworkRows {
+    pub(crate) roads: Sorter<u32, RoadRow>,
+    pub(crate) edges: Sorter<u32, EdgeRow>,
+    pub(crate) strokes: Sorter<u32, StrokeRow>,
 }
 
 impl NetworkRows {
     /// No rows yet. Temporary files are made beside `path`.
-    pub(super) fn create(path: &Path) -> io::Result<Self> {
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
         Ok(Self { roads: sorter(path, "-roads")?, edges: sorter(path, "-edges")?, strokes: sorter(path, "-strokes")? })
     }
 
     /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.
-    pub(super) fn add(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> io::Result<()> {
+    pub(crate) fn add(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> io::Result<()> {
         for (index, row) in edge_rows(portion, measures) {
             let NetworkRow { road, edge } = row;
             if let Some(road) = road {
@@ -78,34 +78,34 @@ impl NetworkRows {
 }
 
 /// What portions and the reader bring beside the network.
-pub(super) struct Gathered {
-    pub(super) restrictions: Vec<PortionRestriction>,
-    pub(super) areas: Vec<Area>,
+pub(crate) struct Gathered {
+    pub(crate) restrictions: Vec<PortionRestriction>,
+    pub(crate) areas: Vec<Area>,
     /// By kind and object, the order of drawing.
-    pub(super) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
+    pub(crate) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
 }
 
 impl Gathered {
     /// No rows yet. Temporary files are made beside `path`.
-    pub(super) fn create(path: &Path) -> io::Result<Self> {
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
         Ok(Self { restrictions: Vec::new(), areas: Vec::new(), backdrop: sorter(path, "-backdrop")? })
     }
 
     /// Adds what lies behind the roads.
-    pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
+    pub(crate) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
         things.iter().try_for_each(|thing| self.backdrop.push((thing.kind, thing.object), thing))
     }
 }
 
 /// An edge, with its road at the first edge of it.
-pub(super) struct NetworkRow {
-    pub(super) road: Option<RoadRow>,
-    pub(super) edge: EdgeRow,
+pub(crate) struct NetworkRow {
+    pub(crate) road: Option<RoadRow>,
+    pub(crate) edge: EdgeRow,
 }
 
 /// The edges that a portion owns with their indices in the whole network, in order. `measures` has one entry per edge of the portion's
 /// network, or is empty.
-pub(super) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Iterator<Item = (u32, NetworkRow)> {
+pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Iterator<Item = (u32, NetworkRow)> {
     let network = &portion.network;
     let mut begin = 0;
     let chunks = network.edges.chunk_by(|a, b| a.road == b.road).map(move |of_road| {
@@ -144,7 +144,7 @@ pub(super) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Ite
 }
 
 /// The strokes that a portion owns.
-pub(super) fn stroke_rows(portion: &Portion) -> impl Iterator<Item = StrokeRow> {
+pub(crate) fn stroke_rows(portion: &Portion) -> impl Iterator<Item = StrokeRow> {
     let network = &portion.network;
     portion.strokes().map(|stroke| {
         let stroke = &network.strokes[stroke as usize];

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
 
-use super::error::StoreError;
-use super::gathered::NetworkRows;
-use super::network_write::{self, Written};
-use super::session::Session;
+use crate::error::StoreError;
+use crate::file::session::Session;
+use crate::roads::network_rows::NetworkRows;
+use crate::roads::network_write::{self, Written};
 
 /// A new database, as far as it has come.
-pub(super) enum Growing {
+pub(crate) enum Growing {
     /// Rows of the network still come.
     Gathering(Session, Box<NetworkRows>),
     /// The rows are complete.
@@ -21,7 +21,7 @@ pub(super) enum Growing {
 
 impl Growing {
     /// The rows, while they still come.
-    pub(super) fn rows(&mut self) -> io::Result<&mut NetworkRows> {
+    pub(crate) fn rows(&mut self) -> io::Result<&mut NetworkRows> {
         match self {
             Self::Gathering(_, rows) => Ok(rows),
             Self::Writing(_) => Err(io::Error::other("the network is complete already")),
@@ -29,7 +29,7 @@ impl Growing {
     }
 
     /// Begins to write the rows, if that has not begun. Temporary files are made beside `scratch`.
-    pub(super) fn write(self, scratch: &Path) -> Result<Writing, StoreError> {
+    pub(crate) fn write(self, scratch: &Path) -> Result<Writing, StoreError> {
         match self {
             Self::Gathering(session, rows) => Writing::begin(session, *rows, scratch),
             Self::Writing(writing) => Ok(writing),
@@ -37,12 +37,12 @@ impl Growing {
     }
 
     /// The connection, with what came of the network.
-    pub(super) fn finish(self, scratch: &Path) -> Result<(Session, Written), StoreError> {
+    pub(crate) fn finish(self, scratch: &Path) -> Result<(Session, Written), StoreError> {
         self.write(scratch)?.finish()
     }
 
     /// The connection. A network that is being written is written to its end.
-    pub(super) fn without_network(self) -> Result<Session, StoreError> {
+    pub(crate) fn without_network(self) -> Result<Session, StoreError> {
         match self {
             Self::Gathering(session, _) => Ok(session),
             Self::Writing(writing) => Ok(writing.finish()?.0),
@@ -51,7 +51,7 @@ impl Growing {
 }
 
 /// A thread that writes the network. Dropping this value stops it and waits for it, so that nothing writes into a file that is given up.
-pub(super) struct Writing {
+pub(crate) struct Writing {
     path: PathBuf,
     stop: Arc<AtomicBool>,
     done: Receiver<Result<(Session, Written), StoreError>>,

@@ -1,4 +1,4 @@
-//! Writes the network into its tables. Arrays keep their order, so that [`super::network_read`] reads the same network.
+//! Writes the network into its tables. Arrays keep their order, so that [`crate::roads::network_read`] reads the same network.
 
 use std::io;
 use std::ops::Range;
@@ -13,25 +13,25 @@ use crate::osm::facts::{CrossSection, Direction, Legal, Limit, RuleSet, Strip};
 use crate::words::Named;
 use netcert_rows::Bounds;
 
-use super::blob;
-use super::bulk::{Bulk, Takes};
-use super::error::content;
-use super::gathered::{EdgeRow, NetworkRows, RoadRow, StrokeRow};
-use super::part::sorter;
+use crate::error::content;
+use crate::file::blob;
+use crate::file::bulk::{Bulk, Takes};
+use crate::file::part::sorter;
+use crate::roads::network_rows::{EdgeRow, NetworkRows, RoadRow, StrokeRow};
 use netcert_files::sorter::{Sorted, Sorter};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// The network as it was written.
-pub(super) struct Written {
+pub(crate) struct Written {
     /// Number of edges.
-    pub(super) edges: u32,
+    pub(crate) edges: u32,
     /// The box around all edges.
-    pub(super) bounds: Option<Bounds>,
+    pub(crate) bounds: Option<Bounds>,
 }
 
 /// Writes all tables of the network except those of restrictions and areas. A temporary file is made beside `path`.
-pub(super) async fn write(
+pub(crate) async fn write(
     to: &mut impl Takes,
     NetworkRows { roads, edges, strokes }: NetworkRows,
     path: &Path,
@@ -44,20 +44,20 @@ pub(super) async fn write(
 }
 
 /// Writes the table of roads, with their sections and limits.
-pub(super) struct Roads {
+pub(crate) struct Roads {
     sections: Distinct<[Option<(u32, u32, u8)>; 3]>,
     legals: Distinct<LegalKey>,
     bulk: Bulk,
 }
 
 impl Roads {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 11));
         Self { sections, legals, bulk: Bulk::new("road", 17) }
     }
 
     /// Writes the next road.
-    pub(super) async fn write(&mut self, to: &mut impl Takes, no: u32, row: &RoadRow) -> Sql<()> {
+    pub(crate) async fn write(&mut self, to: &mut impl Takes, no: u32, row: &RoadRow) -> Sql<()> {
         let road = &row.road;
         let mut section = [0; 2];
         let mut legal = [0; 2];
@@ -88,7 +88,7 @@ impl Roads {
         bulk.end_row(to).await
     }
 
-    pub(super) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
+    pub(crate) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
         self.sections.bulk.finish(to).await?;
         self.legals.bulk.finish(to).await?;
         self.bulk.finish(to).await
@@ -98,18 +98,18 @@ impl Roads {
 /// Where an edge's positions and narrow places are, among those of all edges. Both directions of a piece of road share theirs, and a piece
 /// shares its first position with the piece before. Positions that no edge uses do not count.
 #[derive(Clone, Default)]
-pub(super) struct Ranges {
+pub(crate) struct Ranges {
     road: Option<u32>,
     place: u32,
-    pub(super) shape: Range<u32>,
-    pub(super) narrowings: Range<u32>,
+    pub(crate) shape: Range<u32>,
+    pub(crate) narrowings: Range<u32>,
     /// End of all positions.
     end: u32,
 }
 
 impl Ranges {
     /// Goes on to the next edge. Returns whether its piece of road is a new one.
-    pub(super) fn next(&mut self, row: &EdgeRow) -> bool {
+    pub(crate) fn next(&mut self, row: &EdgeRow) -> bool {
         let same_road = self.road == Some(row.road);
         if same_road && row.place == self.place {
             return false;
@@ -162,15 +162,15 @@ async fn roads_and_edges(
 }
 
 /// Writes the table of narrow places.
-pub(super) struct Narrowings(Bulk);
+pub(crate) struct Narrowings(Bulk);
 
 impl Narrowings {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Bulk::new("narrowing", 3))
     }
 
     /// Writes those of an edge whose piece of road is a new one.
-    pub(super) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &EdgeRow) -> Sql<()> {
+    pub(crate) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &EdgeRow) -> Sql<()> {
         for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
             self.0.add(no);
             self.0.add(narrowing.vertex);
@@ -180,13 +180,13 @@ impl Narrowings {
         Ok(())
     }
 
-    pub(super) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
+    pub(crate) async fn finish(self, to: &mut impl Takes) -> Sql<()> {
         self.0.finish(to).await
     }
 }
 
 /// Writes the row of an edge, given with its index, and returns the box around it. `bulk` collects rows of the table `edge`.
-pub(super) async fn write_edge(
+pub(crate) async fn write_edge(
     to: &mut impl Takes,
     bulk: &mut Bulk,
     (index, row): (u32, EdgeRow),
@@ -237,7 +237,7 @@ fn add_road_columns(bulk: &mut Bulk, row: &RoadRow, edge: &Edge, section: &Cross
 }
 
 /// Adds the columns of an edge's widths.
-pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) {
+pub(crate) fn add_widths(bulk: &mut Bulk, section: &CrossSection) {
     for strip in [section.lane, section.direction, section.carriageway] {
         // People read this width, so it is rounded to millimetres. Certificates use the strip's edges in `section`.
         bulk.add(strip.map(|strip| (f64::from(strip.width_m()) * 1000.0).round() / 1000.0));
@@ -246,7 +246,7 @@ pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) {
 }
 
 /// Writes the strokes, which come in the order of their first edges.
-pub(super) async fn write_strokes(
+pub(crate) async fn write_strokes(
     to: &mut impl Takes,
     strokes: impl Iterator<Item = io::Result<StrokeRow>>,
 ) -> Sql<()> {

@@ -11,10 +11,10 @@ use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named as _;
 use netcert_rows::MainRoad;
 
-use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{corridor_no, width_columns};
-use super::network_read::{line, verdict, word_or_none};
+use crate::database::Database;
+use crate::error::{StoreError, content};
+use crate::results::names::{corridor_no, width_columns};
+use crate::roads::network_read::{line, verdict, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

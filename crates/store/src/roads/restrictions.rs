@@ -6,21 +6,21 @@ use sqlx::sqlite::SqliteConnection;
 use crate::network::{PortionRestriction, Restriction};
 use crate::osm::facts::RestrictionKind;
 
-use super::bulk::Bulk;
-use super::error::content;
-use super::network_read::{index, range, rows};
+use crate::error::content;
+use crate::file::bulk::Bulk;
+use crate::roads::network_read::{index, range, rows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// A network's restrictions: [`crate::network::Network::restrictions`] and the edges that they refer to.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Restrictions {
-    pub(super) all: Vec<Restriction>,
-    pub(super) edges: Vec<u32>,
+pub(crate) struct Restrictions {
+    pub(crate) all: Vec<Restriction>,
+    pub(crate) edges: Vec<u32>,
 }
 
 /// Inserts the restrictions in their order in the whole network. Their edges must be in the database already.
-pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
+pub(crate) async fn insert(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
     restrictions.sort_by(|a, b| (a.rule, &a.edges).cmp(&(b.rule, &b.edges)));
     let mut bulk = Bulk::new("restriction", 6);
     let mut end = 0;
@@ -45,14 +45,14 @@ pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &mut [Portion
 }
 
 /// Replaces all restrictions.
-pub(super) async fn replace(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
     sqlx::query("DELETE FROM restriction_edge").execute(&mut *c).await?;
     sqlx::query("DELETE FROM restriction").execute(&mut *c).await?;
     insert(c, restrictions).await
 }
 
 /// Reads the restrictions of a network with this number of edges.
-pub(super) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
+pub(crate) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
     let sql = "SELECT fid FROM restriction_edge ORDER BY position";
     let sequence = rows(c, sql, |row| index(row, 0, edges)).await?;
     let sql = "SELECT relation_id, kind, conditional, edge_start, edge_end FROM restriction ORDER BY restriction_no";

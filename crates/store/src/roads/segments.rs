@@ -2,8 +2,8 @@
 
 use sqlx::sqlite::SqliteConnection;
 
-use super::database::Database;
-use super::error::StoreError;
+use crate::database::Database;
+use crate::error::StoreError;
 use netcert_rows::SegmentRow;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -25,7 +25,7 @@ impl Database {
     }
 }
 
-pub(super) async fn insert(c: &mut SqliteConnection, segments: &[SegmentRow]) -> Sql<()> {
+pub(crate) async fn insert(c: &mut SqliteConnection, segments: &[SegmentRow]) -> Sql<()> {
     for SegmentRow { way_id, segment_id, share: [from, to] } in segments {
         let insert = sqlx::query("INSERT INTO segment VALUES (?, ?, ?, ?)").bind(way_id).bind(segment_id);
         insert.bind(from).bind(to).execute(&mut *c).await?;

@@ -4,8 +4,8 @@ use sqlx::Row as _;
 
 use netcert_rows::DrivingSides;
 
-use super::database::Database;
-use super::error::StoreError;
+use crate::database::Database;
+use crate::error::StoreError;
 
 impl Database {
     /// The driving side of every edge.
