@@ -98,6 +98,7 @@ pub struct Region {
 
 /// Why a region cannot answer.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RegionError {
     /// The file cannot be read, or lacks the requested content.
     #[error(transparent)]

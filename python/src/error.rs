@@ -53,7 +53,7 @@ pub(crate) fn of_region(error: &LibraryRegionError) -> PyErr {
         LibraryRegionError::Model(error) => of_model(error),
         LibraryRegionError::NoSuchId { .. } => NotFound::new_err(error.to_string()),
         LibraryRegionError::Stopped(_) => stopped(),
-        LibraryRegionError::Speeds(_) => RegionError::new_err(error.to_string()),
+        _ => RegionError::new_err(error.to_string()),
     }
 }
 

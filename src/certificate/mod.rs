@@ -28,6 +28,7 @@ const LESS_M: f64 = 1e-2;
 
 /// Why a certificate cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CertificateError {
     /// Positions cannot be converted from the corridor's frame.
     #[error(transparent)]

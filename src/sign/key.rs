@@ -24,6 +24,7 @@ pub struct PublicKey(VerifyingKey);
 
 /// Why there is no key.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum KeyError {
     /// The file cannot be used as this kind of key.
     #[error("{}: {detail}", path.display())]

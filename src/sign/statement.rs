@@ -64,6 +64,7 @@ pub enum Refusal {
 
 /// Why something cannot be signed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SignError {
     /// The name of the signer cannot be written.
     #[error("--name: give 1 to {LONGEST_NAME} characters on one line")]

@@ -174,7 +174,7 @@ fn what_is_missing_foreign_or_damaged_is_refused_by_name() {
     let alone = job.turns(&tasks[0].bytes, &[], false, &Stop::never());
     assert!(matches!(alone, Err(TaskError::NoVerdict { task: 0, .. })));
     assert!(job.turns(&tasks[0].bytes, &[&own.verdicts[..1]], false, &Stop::never()).is_err());
-    let foreign = text.replacen("0.1.0+", "0.0.9+", 1);
+    let foreign = text.replacen(concat!(env!("CARGO_PKG_VERSION"), "+"), "0.0.9+", 1);
     assert!(matches!(TaskJob::read(&foreign), Err(TaskError::OtherProgram { what: "job", .. })));
     let told = Stop::never();
     told.tell();

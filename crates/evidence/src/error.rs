@@ -24,6 +24,7 @@ impl fmt::Display for Fault {
 
 /// Why nothing was read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EvidenceError {
     /// The file cannot be read.
     #[error("{path}: {source}")]

@@ -7,6 +7,7 @@ use crate::store::StoreError;
 
 /// An error of an export.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExportError {
     /// The database cannot be read.
     #[error(transparent)]

@@ -32,6 +32,7 @@ pub enum Place {
 
 /// The fault.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Problem {
     /// An error of the operating system.
     #[error("cannot read: {0}")]

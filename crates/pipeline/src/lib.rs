@@ -1,7 +1,7 @@
 //! Runs the stages in order: read, network, corridors and certificates, store.
 //!
-//! [`ingest`] makes a database from an extract. [`certify`] adds or replaces certificates in an existing database. Both run the
-//! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
+//! [`ingest`] makes a database from an extract. [`certify()`] adds or replaces certificates in an existing database. Both run the
+//! same stages on the same network, so the same edge and vehicle get the same bytes. [`netcert_certify`] makes the certificates.
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
 use netcert_base::{stop, vehicle, verdict, words};
@@ -65,6 +65,7 @@ use source::Origin;
 
 /// Why a run fails.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// The extract cannot be read.
     #[error(transparent)]
@@ -214,7 +215,7 @@ fn read_roads<'c>(
     Ok((roads, origin))
 }
 
-/// The input of [`certify`].
+/// The input of [`certify()`].
 pub struct Certify<'a> {
     /// An existing database.
     pub db: &'a Path,

@@ -102,6 +102,7 @@ pub fn divide<E: From<RunError>>(
 
 /// Why a task cannot be done.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum TaskError {
     /// Another build of the program made the job or the task.
     #[error("the {what} is of netcert {theirs}, this is {}: all machines need the same build", identity::PROGRAM)]

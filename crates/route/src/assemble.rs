@@ -63,6 +63,7 @@ pub struct RoutePath {
 
 /// Why a route's pieces give no corridor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssemblyError {
     /// A piece has no corridor.
     #[error("a piece of the route has no corridor")]

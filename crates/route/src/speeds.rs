@@ -21,6 +21,7 @@ pub enum Measure {
 
 /// Why a table of speeds cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SpeedsError {
     /// The text is not TOML, or has other fields.
     #[error("speeds: {0}")]

@@ -9,6 +9,7 @@ use crate::vehicle::VehicleError;
 
 /// Why a database cannot be checked.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum VerifyError {
     /// The database cannot be read.
     #[error(transparent)]

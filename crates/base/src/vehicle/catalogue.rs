@@ -18,6 +18,7 @@ const MAX_COMPARED: usize = 100;
 
 /// Why a vehicle or a vehicle file cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum VehicleError {
     /// The file cannot be read.
     #[error("{file}: cannot read the vehicle file: {cause}")]

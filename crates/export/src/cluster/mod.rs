@@ -27,6 +27,7 @@ pub const RESULTS: &str = "certified";
 
 /// Why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FolderError {
     /// A file cannot be read.
     #[error("{}: {source}", path.display())]

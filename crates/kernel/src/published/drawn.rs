@@ -12,6 +12,7 @@ const SPACING_M: f64 = 1.0;
 
 /// Why the shipped route cannot be read. This is a fault of the build, not of a user.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum DrawnError {
     /// Unexpected fields.
     #[error("{FILE}: {0}")]

@@ -34,6 +34,7 @@ impl Scenario {
 
 /// Why the shipped table cannot be read. This is a fault of the build, not of a user.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// Unexpected fields.
     #[error("{FILE}: {0}")]

@@ -19,6 +19,7 @@ const LEVEL_EXIT: usize = 4;
 
 /// Why a plan does not fit a corridor.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// The corridor has no station.
     #[error("the corridor has no station")]

@@ -17,6 +17,7 @@ pub(super) const POINT_SPACING_M: f64 = 5.5;
 
 /// Why a vehicle cannot be certified.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// No unit, or more than [`MAX_UNITS`].
     #[error("vehicle {id}: {count} units; the certificate handles 1 to {MAX_UNITS}")]

@@ -12,6 +12,7 @@ use super::{Corridor, Params};
 
 /// Why a given centreline cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CentrelineError {
     /// A value that cannot be used.
     #[error("{field}: {message}")]

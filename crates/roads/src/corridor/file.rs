@@ -9,6 +9,7 @@ use super::{Corridor, Frame, FrameError, Params};
 
 /// Why a drawn corridor cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// Not JSON, or not of this form. The message gives line and column.
     #[error("not a corridor file: {0}")]

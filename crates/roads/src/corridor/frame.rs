@@ -24,6 +24,7 @@ thread_local! {
 
 /// Why positions have no metric frame.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FrameError {
     /// No positions at all.
     #[error("a metric frame needs at least one position")]

@@ -27,6 +27,7 @@ impl Place {
 
 /// Why positions cannot be looked up.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CountriesError {
     /// The boundaries in the program are damaged.
     #[error("the built-in country boundaries cannot be read: {0}; reinstall netcert")]

@@ -32,6 +32,7 @@ impl RoadClass {
 
 /// Why a rules file cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RulesError {
     /// The file cannot be read.
     #[error("cannot read the road rules {}: {source}", path.display())]

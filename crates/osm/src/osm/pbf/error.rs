@@ -30,6 +30,7 @@ impl fmt::Display for ReadError {
 
 /// The fault of a file.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum Problem {
     /// An error of the operating system.
     #[error("cannot read: {0}")]

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 /// The fault of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum WireError {
     /// A varint without its last byte.
     #[error("a number ends in the middle (unterminated varint)")]
