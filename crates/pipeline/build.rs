@@ -31,6 +31,9 @@ fn name_the_sources(project: &Path) {
         if path.is_dir() { collect(&path, source, &mut files) } else { files.push(source.to_owned()) }
     }
     files.sort();
+    if files.len() < SOURCES.len() * 2 {
+        println!("cargo:error={}: no sources of netcert", project.display());
+    }
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bytes: &[u8]| {
         bytes.iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));

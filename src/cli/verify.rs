@@ -31,6 +31,9 @@ const NOT_CHECKED: &str = "Not checked: what would be enough (need_width_m, need
                            edges, lines and angles of turns, and areas of junctions. A whole turn restriction or road that is gone from the file \
                            is found only with the extract.";
 
+/// What to do about checks that were ended.
+const MORE_TIME: &str = "Checks that took too long have more time with `--patience SECONDS`.";
+
 /// Check certificates again with code that is independent of the code that made them.
 #[derive(Args)]
 #[command(after_help = "\
@@ -81,7 +84,7 @@ impl Verify {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let keys = self.key.iter().map(|path| PublicKey::read(path)).collect::<Result<Vec<_>, _>>()?;
         match (&self.file, &self.db) {
-            (Some(file), _) => verify_file(file, &keys),
+            (Some(file), _) => verify_file(session, file, &keys),
             (None, Some(db)) => {
                 let mut database = Database::open_to_stream(db)?;
                 accept(db, check_database(&mut database, &keys), &keys)?;
@@ -116,6 +119,9 @@ impl Verify {
         }
         out.flush()?;
         session.progress.say(NOT_CHECKED);
+        if complaints.iter().any(|complaint| complaint.detail.contains(check::ENDED)) {
+            session.progress.say(MORE_TIME);
+        }
         if complaints.is_empty() {
             return Ok(());
         }
@@ -167,13 +173,17 @@ fn accept(path: &Path, checked: Result<Vec<Signed>, Refusal>, keys: &[PublicKey]
     Ok(out.flush()?)
 }
 
-fn verify_file(path: &Path, keys: &[PublicKey]) -> anyhow::Result<()> {
+fn verify_file(session: &Session, path: &Path, keys: &[PublicKey]) -> anyhow::Result<()> {
     let text = read(path)?;
     accept(path, check_document(&text, keys).map(|signed| vec![signed]), keys)?;
     let report = check::certificate(&text);
     let mut out = results();
-    for line in lines(&report) {
+    let lines = lines(&report);
+    for line in &lines {
         writeln!(out, "{line}")?;
+    }
+    if lines.iter().any(|line| line.contains(check::ENDED)) {
+        session.progress.say(MORE_TIME);
     }
     if !report.conditions.is_empty() {
         writeln!(out, "The certificate holds only if all of this is so on site; nothing here says that it is:")?;

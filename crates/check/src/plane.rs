@@ -46,7 +46,8 @@
 //! the areas that count change, all of the body is examined; elsewhere its outline is.
 //!
 //! A place outside all areas has no room. It fails every claim of zero or more. A negative claim promises nothing; it
-//! holds there if the deviation is no greater than what it concedes.
+//! holds there if the deviation is no greater than what it concedes, or the distance from a segment beside it and the
+//! deviation across that segment together.
 
 use std::ops::Range;
 
@@ -340,7 +341,9 @@ impl Swept<'_> {
         let spans = &self.road.plane.spans;
         let boundaries: Vec<&Boundary> = active.iter().map(|&k| &spans[k].boundary).collect();
         let mut strict = target >= -TOLERANCE_M;
-        let reach = self.taken(&piece).needed(target, strict);
+        // A claim below zero concedes that a place is so far outside.
+        let conceded = |target: f64, strict: bool| if strict { 0.0 } else { -target };
+        let reach = self.taken(&piece).needed(target, strict).max(conceded(target, strict));
         let corners = self.corners(&piece);
         let near = boundaries.iter().map(|boundary| boundary.near(&corners, reach)).collect();
         let mut open: Vec<(Piece, Vec<Vec<u32>>)> = vec![(piece, near)];
@@ -366,21 +369,39 @@ impl Swept<'_> {
                     straight
                 }
             };
+            // The least that is said of places outside, by the area that says most.
+            let beyond = |near: &[Vec<u32>], piece: &Piece, taken: &Taken, points: &[Point]| {
+                let all =
+                    boundaries.iter().zip(near).flat_map(|(b, near)| near.iter().map(|&k| b.segments[k as usize]));
+                all.map(|segment| self.beyond(piece, taken, points, segment)).fold(taken.no_room(), f64::max)
+            };
+            if !strict && beyond(&near, &piece, &taken, &hull) >= target {
+                continue;
+            }
+            let ways = |(b, near): (&&Boundary, &Vec<u32>)| -> Vec<(u32, Point)> {
+                let ways = near.iter().map(|&k| (k, way(&hull, b.segments[k as usize])));
+                ways.filter(|(_, way)| length(*way) < needed.max(conceded(target, strict))).collect()
+            };
+            let ways: Vec<Vec<(u32, Point)>> = boundaries.iter().zip(&near).map(ways).collect();
             // What is far enough from the whole piece is far enough from its parts.
-            let close = |(b, near): (&&Boundary, &Vec<u32>)| -> Vec<(u32, f64)> {
-                let apart = near.iter().map(|&k| (k, way(&hull, b.segments[k as usize])));
-                let within = apart.filter(|(_, way)| length(*way) < needed);
+            let close = |(b, ways): (&&Boundary, &Vec<(u32, Point)>)| -> Vec<(u32, f64)> {
+                let within = ways.iter().filter(|(_, way)| length(*way) < needed);
                 let kept =
-                    within.map(|(k, way)| (k, way, kept(&piece, &taken, &hull, b.segments[k as usize], way, target)));
+                    within.map(|&(k, way)| (k, way, kept(&piece, &taken, &hull, b.segments[k as usize], way, target)));
                 let close = kept.filter(|(_, way, kept)| *kept < target || strict && length(*way) < ROUNDING_M);
                 close.map(|(k, _, kept)| (k, kept)).collect()
             };
-            let near: Vec<Vec<(u32, f64)>> = boundaries.iter().zip(&near).map(close).collect();
+            let near: Vec<Vec<(u32, f64)>> = boundaries.iter().zip(&ways).map(close).collect();
             if near.iter().zip(&boundaries).any(|(near, b)| near.is_empty() && b.contains(corners[0])) {
                 continue;
             }
             work += DIRECTED_WORK * near.iter().map(Vec::len).sum::<usize>();
-            let known: Vec<Vec<u32>> = near.iter().map(|near| near.iter().map(|(k, _)| *k).collect()).collect();
+            // Parts of a piece that is partly outside may be conceded by segments that are far enough from the piece.
+            let known: Vec<Vec<u32>> = if strict {
+                near.iter().map(|near| near.iter().map(|(k, _)| *k).collect()).collect()
+            } else {
+                ways.iter().map(|ways| ways.iter().map(|(k, _)| *k).collect()).collect()
+            };
             // The room of a piece, and the way to the segment that leaves it no more.
             let room = |piece: &Piece, taken: &Taken, points: &[Point]| {
                 let room = |(b, near): (&&Boundary, &Vec<u32>)| {
@@ -396,15 +417,8 @@ impl Swept<'_> {
             let middle = piece.middle();
             let still = self.taken(&middle).still();
             let there = room(&middle, &still, &self.corners(&middle)[..1]);
-            // The least that is said of places outside, by the area that says most.
-            let beyond = |piece: &Piece, taken: &Taken, points: &[Point]| {
-                let of = |(b, near): (&&Boundary, &Vec<u32>)| {
-                    let said = near.iter().map(|&k| self.beyond(piece, taken, points, b.segments[k as usize]));
-                    said.fold(taken.no_room(), f64::max)
-                };
-                boundaries.iter().zip(&known).map(of).fold(taken.no_room(), f64::max)
-            };
-            let bound = there.map_or_else(|| beyond(&middle, &still, &self.corners(&middle)[..1]), |(bound, _)| bound);
+            let outside = || beyond(&known, &middle, &still, &self.corners(&middle)[..1]);
+            let bound = there.map_or_else(outside, |(bound, _)| bound);
             let failed = bound < target || strict && there.is_none();
             let size = piece.size(&corners);
             let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
@@ -431,8 +445,10 @@ impl Swept<'_> {
                 self.sharpen_about(piece.step, piece.unit, levers);
                 open.push((piece, known));
             } else if !dull && (failed || size <= FINEST_M || work > MOST_WORK) {
-                let whole =
-                    || room(&piece, &taken, &hull).map_or_else(|| beyond(&piece, &taken, &hull), |(bound, _)| bound);
+                let whole = || {
+                    room(&piece, &taken, &hull)
+                        .map_or_else(|| beyond(&known, &piece, &taken, &hull), |(bound, _)| bound)
+                };
                 // A place outside all areas may fail with a bound that would do.
                 let bound = if failed { bound } else { whole() }.min(target - ROUNDING_M);
                 least = Some(([middle.a[0], middle.c[0]], bound));
@@ -507,6 +523,9 @@ impl Swept<'_> {
     fn kept_aslant(&self, piece: &Piece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
         let at = |tangent: f64| (self.kept(piece, taken, hull, segment, turned(way, tangent)), tangent);
         let better = |x: (f64, f64), y: (f64, f64)| if y.0 > x.0 { y } else { x };
+        if length(way) < ROUNDING_M {
+            return self.kept(piece, taken, hull, segment, way);
+        }
         let coarse = TURNS.into_iter().map(at).fold((f64::NEG_INFINITY, 0.0), better);
         let refined = |best: (f64, f64), step: f64| better(better(best, at(best.1 - step)), at(best.1 + step));
         TURN_STEPS.into_iter().fold(coarse, refined).0

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use axum::http::{Method, Uri};
 
+/// Where programs that log look for these lines, whatever the crate is called.
+const TARGET: &str = "netcert::serve";
 /// The greatest length of each part of a line that comes from a request, characters.
 const LONGEST: usize = 300;
 
@@ -14,12 +16,12 @@ pub(super) struct Refused(pub(super) String);
 
 /// Logs a refused request.
 pub(super) fn refused(method: &Method, target: &Uri, refused: &Refused) {
-    log::warn!("{}", line(&refusal(method, target, refused)));
+    log::warn!(target: TARGET, "{}", line(&refusal(method, target, refused)));
 }
 
 /// Logs that the database has changed and was read again.
 pub(super) fn read_anew(db: &Path) {
-    log::info!("{}", line(&format!("{}: it has changed; read anew", db.display())));
+    log::info!(target: TARGET, "{}", line(&format!("{}: it has changed; read anew", db.display())));
 }
 
 fn refusal(method: &Method, target: &Uri, Refused(why): &Refused) -> String {

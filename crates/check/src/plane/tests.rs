@@ -597,3 +597,27 @@ fn a_place_beyond_a_long_wall_lacks_its_depth_and_its_deviation_across() {
     }
     assert!(less > 40, "{less}");
 }
+
+/// A front corner that passes over an oblique wall lacks what it is beyond the wall and its deviation across the wall.
+#[test]
+fn what_is_missing_grows_evenly_as_a_corner_passes_over_a_wall() {
+    let chain = chain(0.05, vec![unit(3.7, -0.6, 1.4, 0.9, 45.0), unit(7.7, 0.0, 1.6, 4.0, 80.0)]);
+    let (link, mut stray_m) = (&chain.links[0], 0.0);
+    let mut proved_m = |beyond_m: f64| {
+        let corridor = walled(-beyond_m);
+        let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+        let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.05);
+        let steps = (subject.road.lead + 90) * STEPS..(subject.road.lead + 99) * STEPS;
+        let proved_m = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
+        let corner = Piece { unit: 0, step: steps.end - 1, a: [link.front; 2], c: [link.half_width; 2], t: [1.0; 2] };
+        stray_m = swept.stray(&corner);
+        proved_m
+    };
+    let inside_m = proved_m(-0.3) - 0.3;
+    let beyond = [-0.05, -0.001, 0.0, 0.001, 0.004, 0.2].map(|beyond_m| (beyond_m, proved_m(beyond_m)));
+    assert!(inside_m > 0.005 - stray_m, "{inside_m} {stray_m}");
+    for (beyond_m, proved_m) in beyond {
+        let lacks_m = (inside_m - beyond_m).max(-stray_m);
+        assert!((proved_m - lacks_m).abs() < 3e-3, "{beyond_m} m beyond: {proved_m}, evenly {lacks_m}");
+    }
+}

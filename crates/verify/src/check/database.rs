@@ -83,7 +83,7 @@ impl SetClaim<'_> {
         Ok(report)
     }
 
-    /// The outcomes of a stroke's rows, none of which is confirmed if they take too long.
+    /// The outcomes of a stroke's rows. If they take too long, no claim is confirmed, nor is anything said of what was found until then.
     fn in_time(&self, chain: &Chain, index: usize, stroke: &Stroke) -> SetReport {
         let edges = self.edges(stroke);
         let edge = edges.first().and_then(|&edge| self.network.edges.get(edge as usize)).map(|edge| edge.id);
@@ -91,7 +91,11 @@ impl SetClaim<'_> {
         let work = Work { what: "stroke", number, of, edge };
         watch::guarded(work, watch::patience(), || self.stroke(chain, stroke)).unwrap_or_else(|TookTooLong| {
             let rows = edges.iter().filter_map(|edge| self.rows.get(edge));
-            SetReport { rows: rows.map(|row| said(row, rules::took_too_long())).collect(), swept_km: 0.0 }
+            let outcome = |row: &EdgeRow| match row_claim::claims_nothing(&row.certificate) {
+                true => Outcome::Confirmed,
+                false => rules::took_too_long(),
+            };
+            SetReport { rows: rows.map(|row| said(row, outcome(row))).collect(), swept_km: 0.0 }
         })
     }
 
@@ -180,7 +184,7 @@ impl SetClaim<'_> {
             return Outcome::Malformed(why);
         }
         // A machine that failed claims nothing, nor does work that took too long.
-        if row.certificate.verdict.claims_nothing() && !row_claim::has_numbers(&row.certificate) {
+        if row_claim::claims_nothing(&row.certificate) {
             return Outcome::Confirmed;
         }
         let expected = expected((self.network, edge), self.vehicle, unknown, row);

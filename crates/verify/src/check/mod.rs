@@ -23,4 +23,5 @@ pub use database::{RowOutcome, SetClaim, SetReport};
 pub use file::{Report, certificate};
 pub use netcert_check::plan::shift;
 pub use netcert_check::{Chain, Finding, Interval, Outcome, RoadError, SpanClaim, Subject, TOLERANCE_M, Weight};
+pub use rules::ENDED;
 pub use turns::TurnsClaim;

@@ -7,6 +7,11 @@ use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named as _;
 use netcert_check::SpanClaim;
 
+/// Whether a row says only that a machine failed, or that work took too long.
+pub(super) fn claims_nothing(row: &CertificateRow) -> bool {
+    row.verdict.claims_nothing() && !has_numbers(row)
+}
+
 /// Whether the row has an RSC or a hinge margin.
 pub(super) fn has_numbers(row: &CertificateRow) -> bool {
     row.rsc_m.is_some() || row.hinge_margin_deg.is_some()

@@ -4,11 +4,13 @@ use crate::vehicle::Vehicle;
 use crate::watch;
 use netcert_check::{Outcome, finding, plan};
 
+/// What is said of a check that used up the program's patience.
+pub const ENDED: &str = "the check took too long and was ended";
+
 /// The outcome of a claim whose check used up the program's patience.
 pub(super) fn took_too_long() -> Outcome {
     let seconds = watch::patience().end_after.as_secs();
-    let told = format!("the check took longer than {seconds} s and was ended; `--patience SECONDS` gives it more time");
-    Outcome::NotConfirmed(vec![finding("work", &told)])
+    Outcome::NotConfirmed(vec![finding("work", &format!("{ENDED} after {seconds} s of processor time"))])
 }
 
 /// Checks that a shrink (γ) is one that the vehicle allows. Databases and files round it to thousandths.

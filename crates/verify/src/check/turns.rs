@@ -77,12 +77,19 @@ impl TurnsClaim<'_> {
         Ok(report)
     }
 
+    /// The lines of the strokes at the ends of these turns. One that takes too long is not made.
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
-        let open =
-            batch.iter().filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
+        let claims = batch.iter().filter(|row| !row_claim::claims_nothing(&row.certificate));
+        let open = claims.filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
         let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.iter().copied()));
         let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
-        let line = |stroke| (stroke, StrokeLine::new(self.network, stroke, self.policy, &self.params.corridor));
+        let line = |stroke: u32| {
+            let work =
+                Work { what: "line", number: u64::from(stroke) + 1, of: self.network.strokes.len() as u64, edge: None };
+            let make = || StrokeLine::new(self.network, stroke, self.policy, &self.params.corridor);
+            let made = watch::guarded(work, watch::patience(), make);
+            (stroke, made.unwrap_or(Err(UnknownReason::TookTooLong)))
+        };
         strokes.into_par_iter().map(line).collect::<Vec<_>>().into_iter().collect()
     }
 
@@ -153,12 +160,15 @@ impl TurnsClaim<'_> {
             return (Outcome::Malformed(why), 0.0);
         }
         // A machine that failed claims nothing, nor does work that took too long.
-        if row.certificate.verdict.claims_nothing() && !row_claim::has_numbers(&row.certificate) {
+        if row_claim::claims_nothing(&row.certificate) {
             return (Outcome::Confirmed, 0.0);
         }
         let made = match self.barred(turn) {
             Some(verdict) => Err(verdict),
-            None => self.made(turn, stroke_of, lines).map_err(Verdict::Unknown),
+            None => match self.made(turn, stroke_of, lines) {
+                Err(UnknownReason::TookTooLong) => return (rules::took_too_long(), 0.0),
+                made => made.map_err(Verdict::Unknown),
+            },
         };
         match made {
             Err(expected) => (without_corridor(&row.certificate, expected), 0.0),
