@@ -228,7 +228,7 @@ def write_job(
     corridor: str = "lane",
     turn_corridor: str = "direction",
     turns: bool = True,
-    needs: str = "edges",
+    needs: str = "estimated",
     max_shift_m: float = 1.5,
     map_tolerance_m: float = 0.0,
     smoothing_tolerance_m: float = 0.5,

@@ -18,7 +18,7 @@ use crate::{error, work};
 
 /// A job as text: for which vehicles tasks are certified, and how. The options are those of `netcert ingest`.
 #[pyfunction]
-#[pyo3(signature = (vehicles, *, corridor = "lane", turn_corridor = "direction", turns = true, needs = "edges", max_shift_m = 1.5,
+#[pyo3(signature = (vehicles, *, corridor = "lane", turn_corridor = "direction", turns = true, needs = "estimated", max_shift_m = 1.5,
                     map_tolerance_m = 0.0, smoothing_tolerance_m = 0.5))]
 #[allow(clippy::too_many_arguments)] // all are named
 pub(crate) fn write_job(

@@ -41,9 +41,10 @@ pub(crate) struct CertifyOptions {
     /// Certify edges only, not the turns at junctions.
     #[arg(long)]
     no_turns: bool,
-    /// Where room is lacking, look for what would be enough: `edges` for the width of edges, `all` for the kerb radius of
-    /// turns, too, which takes several times as long, `off` for neither [default: edges].
-    #[arg(long, value_name = "WHERE", value_parser = word::<Needs>())]
+    /// What is said where room is lacking of how much would be enough: `estimated` for the likely width of edges, `edges` for a
+    /// certified width, which takes about a third longer, `all` for the certified kerb radius of turns, too, which takes several
+    /// times as long, `off` for nothing [default: estimated].
+    #[arg(long, value_name = "HOW", value_parser = word::<Needs>())]
     needs: Option<Needs>,
 }
 

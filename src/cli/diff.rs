@@ -30,7 +30,7 @@ Examples:
 
 Changes:
   became_safe, became_unsafe, became_forbidden, became_unknown
-  became_conditional   it lacks room, and the database knows how much more would be enough
+  became_conditional   it lacks room, and the database says how much more would be enough
   appeared, went       the other database does not have the edge or turn
 
 The table sums edges by road. The other formats have a row for every edge and turn that changed.")]

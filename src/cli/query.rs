@@ -49,7 +49,8 @@ Columns:
   verdict  the verdict and its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
 
   needs    only with --needs-at-most: the width, or with --turns the kerb radius, with which the
-           row would be safe if its road were nowhere narrower
+           row would be safe if its road were nowhere narrower. The width is an estimate, unless the
+           vehicle was certified with --needs edges or all
 
 With --relative-to, two columns more, which say nothing of `safe`:
   relative_m    the RSC less that of the reference: at 0 or more, the vehicle needs no more room there;
@@ -129,7 +130,7 @@ impl Query {
         if let Some(time) = self.at {
             database.set_time(time)?;
         }
-        self.needs_are_known(&set)?;
+        let estimated = self.needs_are_known(&set)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
             let beside = compared.as_mut().map(ReferenceReader::turns).transpose()?;
@@ -144,7 +145,7 @@ impl Query {
             min_width_source: self.width_source,
             ..QueryOptions::new(&self.vehicle, set.policy)
         };
-        let head = self.head(set.policy, scope(vehicle.as_ref()) + shared(set.policy));
+        let head = self.head(set.policy, scope(vehicle.as_ref()) + shared(set.policy) + estimated);
         let mut totals = Totals::default();
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
@@ -189,11 +190,15 @@ impl Query {
         Ok(())
     }
 
-    /// Refuses `--needs-at-most` where the set was certified without looking for needs. An empty answer would mislead.
-    fn needs_are_known(&self, set: &CertifiedSet) -> anyhow::Result<()> {
-        let asked = if self.turns { Needs::All } else { Needs::Edges };
+    /// Refuses `--needs-at-most` where the set has no needs. An empty answer would mislead. Returns what the scope says of needs that are
+    /// estimates.
+    fn needs_are_known(&self, set: &CertifiedSet) -> anyhow::Result<&'static str> {
+        if self.needs_at_most.is_none() {
+            return Ok("");
+        }
+        let asked = if self.turns { Needs::All } else { Needs::Estimated };
         let known = set.settings()?.needs;
-        if self.needs_at_most.is_some() && known != asked && known != Needs::All {
+        if !known.include(asked) {
             let (id, policy, word) = (&set.vehicle_id, set.policy.name(), asked.name());
             anyhow::bail!(
                 "--needs-at-most: {id} was certified with --needs {}, so this database does not have what is asked; \
@@ -201,7 +206,7 @@ impl Query {
                 known.name()
             );
         }
-        Ok(())
+        Ok(if known.include(Needs::Edges) { "" } else { ESTIMATED })
     }
 
     fn head(&self, policy: Policy, mut scope: String) -> Head {
@@ -227,6 +232,10 @@ fn scope(vehicle: Option<&Vehicle>) -> String {
          is no permit and says nothing of bridges or traffic."
     )
 }
+
+/// What a need is that was not certified.
+const ESTIMATED: &str =
+    " `needs` is an estimate; `netcert certify --needs edges` certifies it, and so does `netcert survey`.";
 
 /// What the own lane is where a road has none.
 fn shared(policy: Policy) -> &'static str {

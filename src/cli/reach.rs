@@ -161,5 +161,9 @@ fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, componen
             },
         }));
     }
-    json!({"type": "FeatureCollection", "at": inputs.at.map(|time| time.to_string()), "features": features})
+    let mut collection = json!({"type": "FeatureCollection", "features": features});
+    if let Some(time) = inputs.at {
+        collection["at"] = json!(time.to_string());
+    }
+    collection
 }

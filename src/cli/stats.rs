@@ -8,7 +8,8 @@ use clap::{Args, ValueEnum};
 use netcert::account::AccountRow;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::{self, NeedCount, StatsRow};
-use netcert::store::{Database, Run};
+use netcert::settings::Needs;
+use netcert::store::{CertifiedSet, Database, Run};
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
 
@@ -52,6 +53,8 @@ struct Set<'a> {
     vehicle: &'a str,
     policy: Policy,
     rows: Vec<&'a StatsRow>,
+    /// Whether each need was certified, and not estimated.
+    certified_needs: bool,
 }
 
 impl Stats {
@@ -60,7 +63,7 @@ impl Stats {
         let mut database = Database::open(&path)?;
         let (stats, runs) = (database.stats()?, database.runs()?);
         let names: BTreeMap<String, String> = database.vehicles()?.into_iter().map(|v| (v.id, v.name)).collect();
-        let mut sets = sets(&stats);
+        let mut sets = sets(&stats, &database.certified()?);
         if let Some(wanted) = &self.vehicle {
             sets.retain(|set| set.vehicle == wanted);
             if sets.is_empty() {
@@ -101,12 +104,15 @@ impl Stats {
     }
 }
 
-fn sets(stats: &rows::Stats) -> Vec<Set<'_>> {
+fn sets<'s>(stats: &'s rows::Stats, certified: &[CertifiedSet]) -> Vec<Set<'s>> {
     let mut sets: Vec<Set<'_>> = Vec::new();
     for row in &stats.certificates {
         match sets.last_mut() {
             Some(set) if (set.vehicle, set.policy) == (&row.vehicle_id, row.policy) => set.rows.push(row),
-            _ => sets.push(Set { vehicle: &row.vehicle_id, policy: row.policy, rows: vec![row] }),
+            _ => {
+                let certified_needs = needs_are_certified((&row.vehicle_id, row.policy), certified);
+                sets.push(Set { vehicle: &row.vehicle_id, policy: row.policy, rows: vec![row], certified_needs });
+            }
         }
     }
     sets
@@ -202,6 +208,13 @@ fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Resul
     Ok(())
 }
 
+/// Whether each need of a set was certified, and not estimated.
+fn needs_are_certified(set: (&str, Policy), certified: &[CertifiedSet]) -> bool {
+    let of_set = |known: &&CertifiedSet| (known.vehicle_id.as_str(), known.policy) == set;
+    let settings = certified.iter().find(of_set).and_then(|known| known.settings().ok());
+    settings.is_some_and(|settings| settings.needs.include(Needs::Edges))
+}
+
 /// Prints how much road would be safe if it were somewhat wider: each length includes those before it.
 fn needs(out: &mut dyn Write, set: &Set<'_>, needs: &[NeedCount]) -> anyhow::Result<()> {
     let of_set = |need: &&NeedCount| need.vehicle_id == set.vehicle && need.policy == set.policy;
@@ -213,7 +226,8 @@ fn needs(out: &mut dyn Write, set: &Set<'_>, needs: &[NeedCount]) -> anyhow::Res
         steps.push(format!("{more_m} m {} km", km(sum_m)));
     }
     if !steps.is_empty() {
-        writeln!(out, "  unsafe, but safe with more width of up to: {}", steps.join(", "))?;
+        let by = if set.certified_needs { "" } else { " by estimate" };
+        writeln!(out, "  unsafe, but{by} safe with more width of up to: {}", steps.join(", "))?;
     }
     Ok(())
 }
@@ -280,11 +294,14 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
             })
         })
         .collect();
-    let needs = stats.needs.iter().filter(|need| sets.iter().any(|set| set.vehicle == need.vehicle_id)).map(|need| {
-        json!({
+    let of_set =
+        |need: &NeedCount| sets.iter().find(|set| (set.vehicle, set.policy) == (&*need.vehicle_id, need.policy));
+    let needs = stats.needs.iter().filter_map(|need| {
+        let certified = of_set(need)?.certified_needs;
+        Some(json!({
             "vehicle_id": need.vehicle_id, "corridor": need.policy.name(), "more_width_m": need.more_m,
-            "edges": need.edges, "length_m": need.length_m,
-        })
+            "certified": certified, "edges": need.edges, "length_m": need.length_m,
+        }))
     });
     let needs: Vec<Value> = needs.collect();
     let runs: Vec<Value> = runs

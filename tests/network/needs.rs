@@ -108,6 +108,42 @@ fn an_edge_with_the_width_that_it_needs_is_safe() {
     assert!(needs >= 100 && held == needs && none * 10 < needs);
 }
 
+/// An estimate is no certificate, but whoever looks for roads to measure goes by it. It changes nothing else.
+#[test]
+fn an_estimated_need_is_seldom_far_from_the_certified_one() {
+    let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf");
+    for vehicle in ["AU-BDOUBLE26", "AU-ATRIPLE53"] {
+        let region = Region::read(&demo, Policy::Lane);
+        let model = Model::new(&catalogued(vehicle)).unwrap();
+        let [estimated, searched] = [Needs::Estimated, Needs::Edges]
+            .map(|needs| certified(&region.network, &model, &Settings { needs, ..region.settings.clone() }));
+        assert_eq!(estimated.len(), searched.len());
+        let mut apart_m = Vec::new();
+        for (estimated, searched) in estimated.iter().zip(&searched) {
+            assert_eq!((estimated.edge, estimated.conclusion), (searched.edge, searched.conclusion));
+            let lacks = estimated.conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
+            assert!(lacks || estimated.need_width_m.is_none(), "only what lacks room has a need");
+            if let (Some(likely_m), Some(need_m)) = (estimated.need_width_m, searched.need_width_m) {
+                let twentieths = likely_m * 20.0;
+                assert!((twentieths - twentieths.round()).abs() < 1e-9, "{likely_m}: steps are 5 cm");
+                apart_m.push((likely_m - need_m).abs());
+            } else {
+                assert!(searched.need_width_m.is_none(), "edge {}: a need without an estimate", searched.edge);
+            }
+        }
+        let within = |m: f64| apart_m.iter().filter(|apart_m| **apart_m < m + 1e-6).count();
+        println!(
+            "{vehicle}: {} needs, {} equal, {} a step apart at most, {} within 0.35 m",
+            apart_m.len(),
+            within(0.0),
+            within(0.05),
+            within(0.35)
+        );
+        assert!(apart_m.len() >= 50 && 2 * within(0.0) >= apart_m.len());
+        assert!(10 * within(0.05) >= 8 * apart_m.len() && 20 * within(0.35) >= 19 * apart_m.len());
+    }
+}
+
 #[test]
 fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
     let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf");

@@ -73,7 +73,7 @@ export function sideWords(changed: Changed, side: "before" | "after"): string {
   const measured = verdict === "safe" || (verdict === "unsafe" && reason === "width");
   const room = measured && rsc_m !== null ? margin(rsc_m) : null;
   const first = [standingWords[standing], why ? lower(why) : room].filter(Boolean).join(": ");
-  const more = [why ? room : null, width_m === null ? null : `${length(width_m)} wide`, need_m === null ? null : `${length(need_m, "up")} would do`];
+  const more = [why ? room : null, width_m === null ? null : `${length(width_m)} wide`, need_m === null ? null : `about ${length(need_m, "up")} would do`];
   return [first, ...more].filter(Boolean).join(", ");
 }
 

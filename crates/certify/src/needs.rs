@@ -1,7 +1,7 @@
 //! What would be enough where a certificate lacks room: the least width of an edge, the least kerb radius of a turn.
 //!
-//! Each value is certified: with it, the edge or turn is safe. The search goes in steps, because nobody measures a road to the millimetre,
-//! and it ends with a value that does. A value one step lower need not fail.
+//! An estimate costs nothing: the width less twice the RSC. A value that was searched for is certified: with it, the edge or turn is safe. The
+//! search goes in steps, because nobody measures a road to the millimetre, and it ends with a value that does. A value one step lower need not fail.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -63,6 +63,26 @@ impl<'r> Narrow<'r> {
     }
 }
 
+/// The steps of width that an edge's need may have, and the likely one.
+struct Steps {
+    /// A width that failed.
+    fails: i64,
+    /// The width less twice the RSC: half of what more width gives comes to the tight side. `None` if it is more than `most`.
+    likely: Option<i64>,
+    most: i64,
+}
+
+impl Steps {
+    /// The steps of an edge whose strip is `least_m` wide. `None` if the edge has no RSC.
+    fn of(narrow: &Narrow<'_>, least_m: f64) -> Option<Self> {
+        let rsc_m = narrow.result.rsc_m?;
+        let fails = (least_m * WIDTHS).floor() as i64;
+        let most = fails + (MOST_MORE_M * WIDTHS) as i64;
+        let likely = ((narrow.width_m - 2.0 * rsc_m) * WIDTHS).ceil() as i64;
+        Some(Self { fails, likely: (likely <= most).then(|| likely.max(fails + 1)), most })
+    }
+}
+
 /// The search for one edge's need, in steps of width.
 struct Search {
     edge: u32,
@@ -75,11 +95,9 @@ struct Search {
 
 impl Search {
     fn begin(narrow: &Narrow<'_>, least_m: f64) -> Option<Self> {
-        let rsc_m = narrow.result.rsc_m?;
-        let fails = (least_m * WIDTHS).floor() as i64;
-        let most = fails + (MOST_MORE_M * WIDTHS) as i64;
-        let first = (((narrow.width_m - 2.0 * rsc_m) * WIDTHS).ceil() as i64).clamp(fails + 1, most);
-        Some(Self { edge: narrow.edge, fails: (fails, rsc_m), does: None, next: Some(first), most })
+        let Steps { fails, likely, most } = Steps::of(narrow, least_m)?;
+        let next = Some(likely.unwrap_or(most));
+        Some(Self { edge: narrow.edge, fails: (fails, narrow.result.rsc_m?), does: None, next, most })
     }
 
     /// Takes the result with a width, and decides what to try next.
@@ -154,17 +172,28 @@ struct Widened<'w> {
     planned: &'w [Range<usize>],
 }
 
+/// The width of an edge's strip, metres.
+fn strip_m(job: &Job<'_>, edge: u32) -> Option<f64> {
+    let edge = job.network.edges.get(edge as usize)?;
+    Some(f64::from(job.network.section(edge).strip(job.settings.policy)?.width_m()))
+}
+
+/// For each stroke and vehicle: edges with the width in metres with which each is likely to be safe, if its stroke were nowhere narrower.
+/// An edge that is likely to need more than [`MOST_MORE_M`] more is left out.
+pub(super) fn likely_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32, f64)>> {
+    let likely = |narrow: &Narrow<'_>| {
+        let steps = Steps::of(narrow, strip_m(job, narrow.edge)?)?.likely?;
+        Some((narrow.edge, steps as f64 / WIDTHS))
+    };
+    lacking.iter().map(|lacking| lacking.narrow.iter().filter_map(likely).collect()).collect()
+}
+
 /// For each stroke and vehicle: edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower.
 /// An edge for which no width up to [`MOST_MORE_M`] more would do is left out. All searches take their next step together, so that
 /// the kernel certifies many widened strokes side by side.
 pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32, f64)>> {
-    let least_m = |edge: u32| {
-        let strip = job.network.edges.get(edge as usize);
-        let strip = strip.and_then(|edge| job.network.section(edge).strip(job.settings.policy));
-        strip.map(|strip| f64::from(strip.width_m()))
-    };
     let begin = |lacking: &Lacking<'_>| -> Vec<Search> {
-        lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, least_m(narrow.edge)?)).collect()
+        lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, strip_m(job, narrow.edge)?)).collect()
     };
     let mut searches: Vec<Vec<Search>> = lacking.iter().map(begin).collect();
     let mut laid: FxHashMap<u32, Option<LaidOut<'_>>> = FxHashMap::default();

@@ -9,7 +9,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::job::Job;
-use super::needs::{Lacking, Narrow, edge_needs};
+use super::needs::{Lacking, Narrow, edge_needs, likely_needs};
 use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
@@ -296,7 +296,11 @@ fn add_needs(
             }
         }
     }
-    for ((place, vehicle), needs) in places.into_iter().zip(edge_needs(job, &lacking)) {
+    let needs = match job.settings.needs {
+        Needs::Estimated => likely_needs(job, &lacking),
+        Needs::Off | Needs::Edges | Needs::All => edge_needs(job, &lacking),
+    };
+    for ((place, vehicle), needs) in places.into_iter().zip(needs) {
         for (_, known) in
             results[place].certificates.iter_mut().filter(|(of, known)| *of as usize == vehicle && lacks(known))
         {

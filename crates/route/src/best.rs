@@ -23,10 +23,9 @@ impl Planner {
         if certified.as_ref().is_ok_and(|answer| !answer.routes.is_empty()) {
             return Ok(certified?);
         }
-        searching();
         let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
         let Ok(Conditional { route, conditions, suffices, snapped }) =
-            self.under_conditions(question, refuted, stop)?
+            self.search_conditions(question, refuted, stop, searching)?
         else {
             return Ok(certified?);
         };

@@ -29,22 +29,37 @@ pub struct Settings {
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
     pub turns: bool,
-    /// Where the least width or kerb radius is looked for that would be enough.
+    /// What is said of the width or kerb radius that would be enough.
     pub needs: Needs,
 }
 
-/// For which certificates that lack room it is looked for what would be enough.
+/// What is said of certificates that lack room: how much would be enough.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// For none.
+    /// Nothing.
     Off,
-    /// For edges.
+    /// Of edges the width that is likely to do: the width less twice the RSC. It is not certified.
+    Estimated,
+    /// Of edges a width that was certified to do.
     Edges,
-    /// For edges and turns. A turn takes as long to search as it takes to certify several turns.
+    /// Of edges and turns what was certified to do. A turn takes as long to search as it takes to certify several turns.
     All,
 }
 
-named!(Needs { Off = "off", Edges = "edges", All = "all" });
+named!(Needs { Off = "off", Estimated = "estimated", Edges = "edges", All = "all" });
+
+impl Needs {
+    /// Whether a set with these needs also has what `asked` names.
+    #[must_use]
+    pub fn include(self, asked: Self) -> bool {
+        match asked {
+            Self::Off => true,
+            Self::Estimated => self != Self::Off,
+            Self::Edges => matches!(self, Self::Edges | Self::All),
+            Self::All => self == Self::All,
+        }
+    }
+}
 
 impl Default for Settings {
     /// The settings of `ingest` without options.
@@ -56,7 +71,7 @@ impl Default for Settings {
             stet: Options::default(),
             kerbs: Kerbs::default(),
             turns: true,
-            needs: Needs::Edges,
+            needs: Needs::Estimated,
         }
     }
 }

@@ -164,12 +164,17 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
     let mut opened = 0;
     for row in narrow {
         assert_eq!(row.certificate.verdict, Verdict::Unsafe(UnsafeReason::Width));
-        let need_m = row.need_width_m.unwrap();
+        let slider = &server.json(&format!("/api/explain/{}?vehicle={VEHICLE}", row.edge_id))["suppose"];
+        let number = |name: &str| slider[name].as_f64().unwrap();
+        // The database has an estimate. The width above the slider was certified.
+        let need_m = number("need");
+        let estimate_m = row.need_width_m.unwrap();
+        assert!((need_m - estimate_m).abs() < 0.5, "{need_m} {estimate_m}");
         let met = of(row.edge_id, need_m);
         is_no_certificate(&met);
         assert_eq!(
             (&met["enough"], &met["verdict"], &met["need"]),
-            (&json!(true), &json!("conditional"), &json!(need_m))
+            (&json!(true), &json!("conditional"), &json!(estimate_m))
         );
         assert!(met["rsc_m"].as_f64().unwrap() >= 0.0);
         for other in met["opens"].as_array().unwrap() {
@@ -183,10 +188,7 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
         assert_eq!((&as_it_is["enough"], &as_it_is["verdict"]), (&json!(false), &json!("unsafe")));
         assert!((as_it_is["rsc_m"].as_f64().unwrap() - row.certificate.rsc_m.unwrap()).abs() < 2e-3);
         assert_eq!(as_it_is["opens"], json!([]), "nothing opens where nothing is supposed");
-        let slider = &server.json(&format!("/api/explain/{}?vehicle={VEHICLE}", row.edge_id))["suppose"];
-        let number = |name: &str| slider[name].as_f64().unwrap();
-        assert!(number("low") <= number("now") && need_m < number("high"), "{slider}");
-        assert_eq!(slider["need"], json!(need_m));
+        assert!(number("low") <= number("now") && need_m <= number("high"), "{slider}");
     }
     assert!(opened > 0, "no supposition opens another edge");
     let forbidden = rows.iter().find(|row| matches!(row.certificate.verdict, Verdict::Forbidden(_))).unwrap();

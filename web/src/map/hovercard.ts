@@ -44,7 +44,7 @@ function content({ kind, properties }: Under): Node[] {
   return [
     h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
     h("div", { class: "hover-name" }, name),
-    typeof need === "number" ? h("div", { class: "hover-more" }, `${length(need, "up")} would do, nowhere narrower along the road`) : null,
+    typeof need === "number" ? h("div", { class: "hover-more" }, `About ${length(need, "up")} would do, nowhere narrower along the road`) : null,
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
     kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
   ].filter((node) => node !== null);

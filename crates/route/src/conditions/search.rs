@@ -51,11 +51,23 @@ impl Planner {
         refuted: &[Refutation],
         stop: &Stop,
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
+        self.search_conditions(question, refuted, stop, || ())
+    }
+
+    /// As [`Self::under_conditions`]. `searching` is called when all places are on the roads, before the search, which takes long.
+    pub(crate) fn search_conditions(
+        &mut self,
+        question: &Question,
+        refuted: &[Refutation],
+        stop: &Stop,
+        searching: impl FnOnce(),
+    ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
         let access = self.conditional_access(refuted);
         let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
         let snap = |place| self.snapper.snap(place, question.snap_m, open);
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
+        searching();
         let kept = self.fitter.take();
         let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
         let answer = self.fit(&mut fitter, question, snapped, access, stop);

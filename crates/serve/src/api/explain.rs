@@ -106,7 +106,7 @@ fn of_edge(
     let mut members = explain::json(&explanation);
     members["kind"] = json!("edge");
     members["at"] = json!(limiting_place(network, edge, &explanation));
-    members["suppose"] = suppose::of_edge(network, edge, settings, row.as_ref());
+    members["suppose"] = suppose::of_edge(network, edge, (model, settings), row.as_ref());
     let measured = region.read(|database| database.measured_on(network, edge))?;
     members["measurements"] = measured.iter().map(Measurement::json).collect();
     let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());

@@ -11,17 +11,17 @@ use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
 use super::{answered, id};
-use crate::certify::{MOST_KERB_M, MOST_MORE_M, stroke_at_least, turn_with_kerb, verdict};
+use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_with_kerb, verdict};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::route::{CONDITIONAL, PartKind, title};
 use crate::rows::{EdgeRow, TurnRow};
-use crate::settings::Settings;
+use crate::settings::{Needs, Settings};
 use crate::stet::{Model, SpanResult};
 use crate::stop::Stop;
 use crate::store::{QueryOptions, TurnQuery};
 use crate::turns::TurnFacts;
-use crate::verdict::Verdict;
+use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::{Named, verdict_words};
 
 /// The steps of a slider, metres. Needs are in steps that these meet.
@@ -189,13 +189,18 @@ fn turn_row(region: &Region, vehicle: &str, policy: Policy, id: i64) -> Result<O
 }
 
 /// What may be supposed of an edge, for a slider. Null if no width decides there.
-pub(super) fn of_edge(network: &Network, edge: u32, settings: &Settings, row: Option<&EdgeRow>) -> Value {
+pub(super) fn of_edge(
+    network: &Network,
+    edge: u32,
+    (model, settings): (&Model, &Settings),
+    row: Option<&EdgeRow>,
+) -> Value {
     let Some(now_m) = width_m_of(network, edge, settings.policy) else { return Value::Null };
     let Some(row) = row.filter(|row| matches!(row.certificate.verdict, Verdict::Safe | Verdict::Unsafe(_))) else {
         return Value::Null;
     };
-    let high_m =
-        row.need_width_m.map_or(0.0, |need_m| need_m + ABOVE_NEED_M).max(now_m + MORE_M).min(now_m + MOST_MORE_M);
+    let need_m = certified_need_m((network, edge), (model, settings), row);
+    let high_m = need_m.map_or(0.0, |need_m| need_m + ABOVE_NEED_M).max(now_m + MORE_M).min(now_m + MOST_MORE_M);
     let step = |m: f64| (m / WIDTH_STEP_M + 1e-6).floor() * WIDTH_STEP_M;
     json!({
         "quantity": width_name(settings.policy),
@@ -204,9 +209,22 @@ pub(super) fn of_edge(network: &Network, edge: u32, settings: &Settings, row: Op
         "low": hundredths(step(now_m) + 1e-6),
         "high": hundredths(step(high_m) + 1e-6),
         "step": WIDTH_STEP_M,
-        "need": row.need_width_m,
+        "need": need_m,
         "need_flare": Value::Null,
     })
+}
+
+/// A width that was certified to do for an edge that lacks room, metres: the stored one, or if that is an estimate, one that is looked for now.
+fn certified_need_m(
+    (network, edge): (&Network, u32),
+    (model, settings): (&Model, &Settings),
+    row: &EdgeRow,
+) -> Option<f64> {
+    if settings.needs.include(Needs::Edges) || row.certificate.verdict != Verdict::Unsafe(UnsafeReason::Width) {
+        return row.need_width_m;
+    }
+    let stroke = *network.strokes_of_edges().get(edge as usize)?;
+    edge_need(network, (stroke, edge), model, settings)
 }
 
 /// What may be supposed of a turn, for a slider. Null if no kerb radius decides there.
