@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::osm::facts::Countries;
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, TurnMade};
-use crate::store::{Finished, MapChanges, PartOfWork, Stage};
+use crate::store::{Checkpoint, MapChanges, PartOfWork, Stage};
 use crate::verdict::{UnknownReason, Verdict};
 
 use super::making::{Making, Whom};
@@ -54,10 +54,10 @@ pub(super) struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Reads all results into `finished`, after a look whether they belong to this extract.
+    /// Reads all results into `checkpoint`, after a look whether they belong to this extract.
     pub(super) fn take_over(
         &mut self,
-        finished: &mut Finished,
+        checkpoint: &mut Checkpoint,
         (input, hash): (&Path, &str),
         portions: usize,
     ) -> Result<(), RunError> {
@@ -73,11 +73,11 @@ impl Results<'_> {
                 self.tasks
             )));
         }
-        finished.begin_again()?;
+        checkpoint.begin_again()?;
         for result in &mut *self.each {
             let TaskResult { part, work } = result?;
             match work {
-                Some(work) => finished.take_over(part, &work)?,
+                Some(work) => checkpoint.take_over(part, &work)?,
                 None => drop(self.failed.insert(part)),
             }
         }

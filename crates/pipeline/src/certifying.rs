@@ -12,7 +12,7 @@ use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{Finished, PartOfWork, Stage, VehicleNo, Writer};
+use crate::store::{Checkpoint, PartOfWork, Stage, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -42,7 +42,7 @@ impl Certifying<'_> {
         &self,
         roads: &mut Roads<'_>,
         writer: &mut Writer,
-        finished: &mut Finished,
+        checkpoint: &mut Checkpoint,
         summary: &mut Summary,
     ) -> Result<(EdgeVerdicts, Vec<AccountRow>), RunError> {
         let clock = Instant::now();
@@ -55,7 +55,7 @@ impl Certifying<'_> {
             outcome.go_on(&portion.network);
             let own = portion.edges().count() as u64;
             let share = Share::new(self.reporter, done, own);
-            self.strokes_of((number, portion), writer, finished, (&mut outcome, &mut verdicts), &share)?;
+            self.strokes_of((number, portion), writer, checkpoint, (&mut outcome, &mut verdicts), &share)?;
             for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
                 let plan = StoredPlan { at: portion.edge(plan.at), ..plan };
                 writer.plan(self.numbers[vehicle], self.settings.policy, &plan)?;
@@ -73,7 +73,7 @@ impl Certifying<'_> {
         &self,
         (number, portion): (usize, &Portion),
         writer: &mut Writer,
-        finished: &mut Finished,
+        checkpoint: &mut Checkpoint,
         (outcome, verdicts): (&mut Outcome, &mut EdgeVerdicts),
         share: &Share<'_>,
     ) -> Result<(), RunError> {
@@ -100,7 +100,7 @@ impl Certifying<'_> {
             writer.certificate(self.numbers[vehicle], policy, &EdgeCertificate { edge, ..certificate.clone() })
         };
         let part = (Stage::Strokes, number as u32);
-        finished.each(part, |batch: Vec<StrokeMade>| {
+        checkpoint.each(part, |batch: Vec<StrokeMade>| {
             batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
         })?;
         let left = left.all();
@@ -113,8 +113,8 @@ impl Certifying<'_> {
             left.iter().map(made).try_for_each(|made| outcome.add(made, &mut sink))?;
             return Ok(());
         }
-        let finished = Mutex::new(finished);
-        let keep = |made: &[StrokeMade]| locked(&finished).keep(part, made);
+        let checkpoint = Mutex::new(checkpoint);
+        let keep = |made: &[StrokeMade]| locked(&checkpoint).keep(part, made);
         make_strokes(&job, &left, share, &keep, |made| outcome.add(made, &mut sink))?;
         Ok(())
     }
@@ -125,7 +125,7 @@ impl Certifying<'_> {
         roads: &mut Roads<'_>,
         verdicts: &EdgeVerdicts,
         writer: &mut Writer,
-        finished: &mut Finished,
+        checkpoint: &mut Checkpoint,
         summary: &mut Summary,
     ) -> Result<(), RunError> {
         let clock = Instant::now();
@@ -138,7 +138,7 @@ impl Certifying<'_> {
             let portion = roads.portion(number);
             let own = portion.edges().count() as u64;
             let share = Share::new(self.reporter, done, own);
-            self.turns_of((number, portion), &verdicts.of(portion), writer, finished, &mut outcome, &share)?;
+            self.turns_of((number, portion), &verdicts.of(portion), writer, checkpoint, &mut outcome, &share)?;
             done += own;
         }
         self.reporter.end();
@@ -162,7 +162,7 @@ impl Certifying<'_> {
         (number, portion): (usize, &Portion),
         verdicts: &EdgeVerdicts,
         writer: &mut Writer,
-        finished: &mut Finished,
+        checkpoint: &mut Checkpoint,
         outcome: &mut TurnOutcome,
         share: &Share<'_>,
     ) -> Result<(), RunError> {
@@ -190,7 +190,7 @@ impl Certifying<'_> {
             writer.turn_certificate(self.numbers[vehicle], policy, first, certificate)
         };
         let part = (Stage::Turns, number as u32);
-        finished.each(part, |batch: Vec<TurnMade>| {
+        checkpoint.each(part, |batch: Vec<TurnMade>| {
             batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
         })?;
         let left = left.all();
@@ -199,8 +199,8 @@ impl Certifying<'_> {
             left.iter().map(made).try_for_each(|made| outcome.add(&made, &mut sink))?;
             return Ok(());
         }
-        let finished = Mutex::new(finished);
-        let keep = |made: &TurnMade| locked(&finished).keep(part, std::slice::from_ref(made));
+        let checkpoint = Mutex::new(checkpoint);
+        let keep = |made: &TurnMade| locked(&checkpoint).keep(part, std::slice::from_ref(made));
         make_turns(&job, &left, share, &keep, |made| outcome.add(&made, &mut sink))?;
         Ok(())
     }

@@ -122,19 +122,19 @@ impl Making<'_> {
         for model in &models {
             identity.add(&record(&model.vehicle)?.definition);
         }
-        let mut finished = writer.finished(&identity.finish())?;
+        let mut checkpoint = writer.checkpoint(&identity.finish())?;
         if let Some(results) = &mut results {
             let first = self.inputs.first().copied().unwrap_or(Path::new(""));
-            results.take_over(&mut finished, (first, &hash), roads.portions())?;
+            results.take_over(&mut checkpoint, (first, &hash), roads.portions())?;
         }
-        match (finished.is_empty() || results.is_some(), writer.replaced_leftover()) {
+        match (checkpoint.is_empty() || results.is_some(), writer.replaced_leftover()) {
             (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
             (true, true) => {
                 reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used");
             }
             (true, false) => {}
         }
-        if finished.is_empty()
+        if checkpoint.is_empty()
             && let (Some(stored), Some(portion)) = (&mut stored, roads.only())
             && let Some((mut amendment, account)) =
                 amendment(stored, portion, &facts, self.settings, (reporter, &mut summary))
@@ -148,7 +148,7 @@ impl Making<'_> {
             writer.map_changes(std::mem::take(&mut self.changes));
             let changed = amendment.sets.iter().map(|set| set.edges.len() + set.turns.len()).sum::<usize>();
             writer.amend(&mut amendment, &self.run_record(&header, hash, started))?;
-            finished.remove()?;
+            checkpoint.remove()?;
             reporter.end();
             summary.stage("store", clock, changed as u64, "certificates");
             summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
@@ -175,13 +175,13 @@ impl Making<'_> {
             failed: results.as_ref().map(|results| &results.failed),
             reporter,
         };
-        let (verdicts, of_strokes) = certifying.strokes(&mut roads, &mut writer, &mut finished, &mut summary)?;
+        let (verdicts, of_strokes) = certifying.strokes(&mut roads, &mut writer, &mut checkpoint, &mut summary)?;
         summary.account.extend(roads.account());
         summary.account.append(&mut of_measurements);
         summary.account.extend(of_strokes);
         let mut writer = writer.network_complete()?;
         if self.settings.turns {
-            certifying.turns(&mut roads, &verdicts, &mut writer, &mut finished, &mut summary)?;
+            certifying.turns(&mut roads, &verdicts, &mut writer, &mut checkpoint, &mut summary)?;
         }
 
         let clock = Instant::now();
@@ -201,7 +201,7 @@ impl Making<'_> {
         writer.map_changes(std::mem::take(&mut self.changes));
         writer.segments(segments.unwrap_or_default());
         writer.finish(&self.run_record(&header, hash, started))?;
-        finished.remove()?;
+        checkpoint.remove()?;
         reporter.end();
         summary.stage("store", clock, certificates, "certificates");
         summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();

@@ -16,7 +16,7 @@ use crate::reporter::Silent;
 use crate::rows::{EdgeMeasure, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{self, CertifiedSet, Database, KeptPlans};
+use crate::store::{self, CertifiedSet, Database, StoredPlans};
 use crate::turns::{JunctionArea, TurnFacts, turn_facts};
 use crate::verdict::Verdict;
 
@@ -27,11 +27,11 @@ use super::{RunError, StageSummary, Summary, read_roads, record};
 
 /// The certificates of one vehicle.
 struct Set {
-    edges: Vec<store::Kept>,
-    turns: Vec<store::Kept>,
+    edges: Vec<store::StoredCertificate>,
+    turns: Vec<store::StoredCertificate>,
     /// By first edge of the stroke, and by turn.
-    plans: KeptPlans,
-    turn_plans: KeptPlans,
+    plans: StoredPlans,
+    turn_plans: StoredPlans,
 }
 
 /// What stands of an earlier database.
@@ -198,7 +198,7 @@ impl Earlier {
         &'a self,
         network: &'a Network,
         stroke: u32,
-    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a store::Kept>)> {
+    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a store::StoredCertificate>)> {
         edges_of(network, stroke).iter().filter_map(|&edge| {
             let older = self.older(edge)? as usize;
             let kept = self.sets.iter().map(|set| set.edges.get(older)).collect::<Option<Vec<_>>>()?;
@@ -219,7 +219,7 @@ impl Earlier {
         &'a self,
         network: &Network,
         turns: &'a [TurnFacts],
-    ) -> impl Iterator<Item = (u32, Vec<(&'a store::Kept, Option<StoredPlan>)>)> {
+    ) -> impl Iterator<Item = (u32, Vec<(&'a store::StoredCertificate, Option<StoredPlan>)>)> {
         let touched = Touched::find(network, turns, &self.differences.edges, &self.differences.nodes);
         let touched: FxHashSet<u32> = touched.turns.into_iter().collect();
         let by_id: FxHashMap<i64, u32> = (0_u32..).zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();
@@ -232,7 +232,9 @@ impl Earlier {
             };
             let kept = stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten();
             // What was not done is done now.
-            let made = |kept: &Vec<(&store::Kept, _)>| !kept.iter().any(|(kept, _)| kept.verdict().claims_nothing());
+            let made = |kept: &Vec<(&store::StoredCertificate, _)>| {
+                !kept.iter().any(|(kept, _)| kept.verdict().claims_nothing())
+            };
             kept.filter(made).map(|kept| (index, kept))
         })
     }

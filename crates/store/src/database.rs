@@ -23,7 +23,7 @@ use crate::file::schema::MIGRATIONS;
 use crate::file::session::Session;
 use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::register::evidence::{self, RegisterState};
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use crate::results::names::corridor_no;
 use crate::results::plans;
 use crate::results::sets::{self, Set};
@@ -189,9 +189,10 @@ impl Database {
     ) -> Result<(), StoreError> {
         let written = self.acceptable(settings)?;
         let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
-        let pack =
-            |certificate: EdgeCertificate| Packed::edge(&certificate).map_err(|why| unsound(certificate.edge, why));
-        let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
+        let pack = |certificate: EdgeCertificate| {
+            CompactCertificate::edge(&certificate).map_err(|why| unsound(certificate.edge, why))
+        };
+        let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<CompactCertificate>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         let edges: u32 =
             self.session.run(async |c| sqlx::query_scalar("SELECT count(*) FROM edge").fetch_one(c).await)?;
@@ -238,7 +239,7 @@ impl Database {
 /// A vehicle's new certificates in packed form.
 struct Renewed<'a> {
     settings: String,
-    rows: Vec<Packed>,
+    rows: Vec<CompactCertificate>,
     plans: Vec<StoredPlan>,
     turns: Option<(TurnSet<'a>, PackedSet)>,
 }

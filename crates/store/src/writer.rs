@@ -28,20 +28,20 @@ use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::register::amend::{self, Amendment};
 use crate::register::evidence::{self, Register};
 use crate::register::renewal;
-use crate::results::checkpoint::{self, Finished};
-use crate::results::compact::Packed;
+use crate::results::checkpoint::{self, Checkpoint};
+use crate::results::compact::CompactCertificate;
 use crate::results::names::{VERDICTS, corridor_no};
 use crate::results::plans;
 use crate::results::sets::{self, Set};
 use crate::results::settings;
 use crate::results::turns::{self, TurnKey};
-use crate::results::write_order::{SetNo, Waiting};
+use crate::results::write_order::{CertificateSorter, SetNo};
 use crate::roads::areas;
 use crate::roads::backdrop;
 use crate::roads::junctions;
 use crate::roads::map_changes::{self, MapChanges};
-use crate::roads::network_rows::{Gathered, NetworkRows};
-use crate::roads::network_thread::Growing;
+use crate::roads::network_rows::{MapRows, NetworkRows};
+use crate::roads::network_thread::NewNetwork;
 use crate::roads::network_write::Written;
 use crate::roads::restrictions;
 use crate::roads::segments;
@@ -60,13 +60,13 @@ pub struct VehicleNo(u32);
 /// A database under construction. If it is dropped unfinished, an older file at its path stays unchanged.
 pub struct Writer {
     /// Dropped before `part`, which then nobody writes any more.
-    growing: Growing,
+    network: NewNetwork,
     /// The stored text of the settings, by the policy's number.
     settings: Vec<String>,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
-    gathered: Gathered,
-    certificates: Waiting,
+    map_rows: MapRows,
+    certificates: CertificateSorter,
     turns: Option<Turns>,
     /// Nothing if there is no older database, or none with measurements that can be read.
     older: Option<Older>,
@@ -85,14 +85,14 @@ struct Turns {
     /// By node.
     junctions: Sorter<i64, JunctionArea>,
     /// By the turns' numbers.
-    certificates: Waiting,
+    certificates: CertificateSorter,
 }
 
 impl Turns {
     fn create(path: &Path) -> io::Result<Self> {
         let rows = sorter(path, "-turns")?;
         let junctions = sorter(path, "-junctions")?;
-        let certificates = Waiting::create(&with_suffix(path, "-turn"))?;
+        let certificates = CertificateSorter::create(&with_suffix(path, "-turn"))?;
         Ok(Self { rows, count: 0, junctions, certificates })
     }
 }
@@ -131,12 +131,12 @@ impl Database {
         })?;
         let at = |e| StoreError::io(path, e);
         Ok(Writer {
-            growing: Growing::Gathering(session, Box::new(NetworkRows::create(&part.path).map_err(at)?)),
+            network: NewNetwork::Gathering(session, Box::new(NetworkRows::create(&part.path).map_err(at)?)),
             settings: by_policy,
             vehicles: Vec::new(),
             account: Vec::new(),
-            gathered: Gathered::create(&part.path).map_err(at)?,
-            certificates: Waiting::create(&part.path).map_err(at)?,
+            map_rows: MapRows::create(&part.path).map_err(at)?,
+            certificates: CertificateSorter::create(&part.path).map_err(at)?,
             turns: None,
             older,
             evidence: Register::default(),
@@ -158,8 +158,8 @@ impl Writer {
     ///
     /// # Errors
     /// The file beside the database cannot be written.
-    pub fn finished(&self, identity: &[u8; 32]) -> Result<Finished, StoreError> {
-        Finished::open(checkpoint::path_of(&self.part.target), identity)
+    pub fn checkpoint(&self, identity: &[u8; 32]) -> Result<Checkpoint, StoreError> {
+        Checkpoint::open(checkpoint::path_of(&self.part.target), identity)
     }
 
     /// The register of the older database; `None` if it has no measurements and never had any, or cannot be read.
@@ -193,9 +193,9 @@ impl Writer {
     /// Adds what a portion owns of the network. `measures` has one entry per edge of the portion's network, or is empty. The call may
     /// follow those of the certificates, because the measures are known only then.
     pub fn portion(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
-        let added = self.growing.rows().and_then(|rows| rows.add(portion, measures));
+        let added = self.network.rows().and_then(|rows| rows.add(portion, measures));
         added.map_err(|e| StoreError::io(&self.part.target, e))?;
-        self.gathered.restrictions.extend(portion.restrictions());
+        self.map_rows.restrictions.extend(portion.restrictions());
         Ok(())
     }
 
@@ -204,18 +204,18 @@ impl Writer {
     /// # Errors
     /// The system refuses a thread.
     pub fn network_complete(mut self) -> Result<Self, StoreError> {
-        self.growing = Growing::Writing(self.growing.write(&self.part.path)?);
+        self.network = NewNetwork::Writing(self.network.write(&self.part.path)?);
         Ok(self)
     }
 
     /// Adds the areas of the whole network.
     pub fn areas(&mut self, areas: Vec<Area>) {
-        self.gathered.areas = areas;
+        self.map_rows.areas = areas;
     }
 
     /// Adds what lies behind the roads.
     pub fn backdrop(&mut self, things: &[Backdrop]) -> Result<(), StoreError> {
-        self.gathered.add_backdrop(things).map_err(|e| StoreError::io(&self.part.target, e))
+        self.map_rows.add_backdrop(things).map_err(|e| StoreError::io(&self.part.target, e))
     }
 
     /// Adds a vehicle. Ids must be distinct.
@@ -232,12 +232,17 @@ impl Writer {
         policy: Policy,
         certificate: &EdgeCertificate,
     ) -> Result<(), StoreError> {
-        let packed =
-            Packed::edge(certificate).map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+        let packed = CompactCertificate::edge(certificate)
+            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
         self.push(vehicle, policy, packed)
     }
 
-    pub(super) fn push(&mut self, vehicle: VehicleNo, policy: Policy, packed: Packed) -> Result<(), StoreError> {
+    pub(super) fn push(
+        &mut self,
+        vehicle: VehicleNo,
+        policy: Policy,
+        packed: CompactCertificate,
+    ) -> Result<(), StoreError> {
         let waiting = self.certificates.certificate((vehicle.0, corridor_no(policy)), packed);
         waiting.map_err(|e| StoreError::io(&self.part.target, e))
     }
@@ -281,17 +286,17 @@ impl Writer {
         first: u32,
         certificate: &TurnCertificate,
     ) -> Result<(), StoreError> {
-        let packed =
-            Packed::turn(certificate).map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
+        let packed = CompactCertificate::turn(certificate)
+            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
         let plan = certificate.plan.clone().map(|plan| StoredPlan { at: plan.at + first, ..plan });
-        self.push_turn(vehicle, policy, Packed { fid: packed.fid + first, ..packed }, plan)
+        self.push_turn(vehicle, policy, CompactCertificate { fid: packed.fid + first, ..packed }, plan)
     }
 
     pub(super) fn push_turn(
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
-        packed: Packed,
+        packed: CompactCertificate,
         plan: Option<StoredPlan>,
     ) -> Result<(), StoreError> {
         let Some(turns) = &mut self.turns else { return Ok(()) };
@@ -312,8 +317,8 @@ impl Writer {
     pub fn finish(self, run: &Run) -> Result<(), StoreError> {
         let path = self.part.target.clone();
         let at = |e| StoreError::io(&path, e);
-        let (mut session, Written { edges, bounds }) = self.growing.finish(&self.part.path)?;
-        let Gathered { mut restrictions, areas, backdrop: things } = self.gathered;
+        let (mut session, Written { edges, bounds }) = self.network.finish(&self.part.path)?;
+        let MapRows { mut restrictions, areas, backdrop: things } = self.map_rows;
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let (vehicles, account) = (&self.vehicles, &self.account);
         let run_id = session.run(async |c| {
@@ -367,16 +372,16 @@ impl Writer {
     /// Something cannot be read or stored. The older database is then unchanged.
     pub fn amend(mut self, amendment: &mut Amendment<'_>, run: &Run) -> Result<(), StoreError> {
         let path = self.part.target.clone();
-        self.growing.without_network()?.close()?;
+        self.network.without_network()?.close()?;
         self.part.copy_target()?;
         let mut session = Session::open(&path, &options(&self.part))?;
-        let things = self.gathered.backdrop.sorted().map_err(|e| StoreError::io(&path, e))?;
+        let things = self.map_rows.backdrop.sorted().map_err(|e| StoreError::io(&path, e))?;
         let things = things.map(|row| row.map(|(_, thing)| thing));
         let packed = amendment.sets.iter_mut().map(renewal::pack).collect::<Result<Vec<_>, _>>()?;
         session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
             amend::write(c, amendment, &packed).await?;
-            areas::replace(c, &self.gathered.areas).await?;
+            areas::replace(c, &self.map_rows.areas).await?;
             backdrop::replace(c, things).await?;
             map_changes::replace(c, &self.map_changes).await?;
             records::replace_runs(c, run, &self.account).await?;
@@ -416,7 +421,7 @@ impl FinishTurns<'_> {
         let in_order = numbers.is_sorted();
         let waiting = turns.certificates;
         let waiting = if in_order { Ok(waiting) } else { waiting.renumbered(&with_suffix(path, "-ordered"), &numbers) };
-        let (mut certificates, mut plans) = waiting.and_then(Waiting::sorted).map_err(at)?;
+        let (mut certificates, mut plans) = waiting.and_then(CertificateSorter::sorted).map_err(at)?;
         while let Some((vehicle_no, corridor)) = certificates.next_set().map_err(at)? {
             let set: SetNo = (vehicle_no, corridor);
             let of = (vehicle_no, Policy::ALL[usize::from(corridor)], run_id);

@@ -17,7 +17,7 @@ use crate::file::bulk::Bulk;
 use crate::provenance::records::{self, Run};
 use crate::register::evidence::{self, Register};
 use crate::results::carry_over::PAGE_ROWS;
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use crate::results::names::{corridor_no, verdict_of};
 use crate::results::plans;
 use crate::results::sets;
@@ -145,16 +145,16 @@ impl Database {
 
 /// A set's rows, ready to be written.
 pub(crate) struct PackedRenewal {
-    edges: Vec<Packed>,
-    turns: Vec<Packed>,
+    edges: Vec<CompactCertificate>,
+    turns: Vec<CompactCertificate>,
     turn_plans: Vec<StoredPlan>,
 }
 
 pub(crate) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
-    let edge = |known: &EdgeCertificate| Packed::edge(known).map_err(|why| unsound(known.edge, why));
-    let turn = |known: &TurnCertificate| Packed::turn(known).map_err(|why| unsound(known.turn, why));
+    let edge = |known: &EdgeCertificate| CompactCertificate::edge(known).map_err(|why| unsound(known.edge, why));
+    let turn = |known: &TurnCertificate| CompactCertificate::turn(known).map_err(|why| unsound(known.turn, why));
     let mut edges = set.edges.iter().map(edge).collect::<Result<Vec<_>, _>>()?;
     let mut turns = set.turns.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
     edges.sort_unstable_by_key(|row| row.fid);
@@ -213,7 +213,7 @@ async fn remove(
     c: &mut SqliteConnection,
     tables: [&'static str; 2],
     (vehicle_no, corridor): (u32, u8),
-    rows: &[Packed],
+    rows: &[CompactCertificate],
 ) -> Sql<()> {
     for table in tables {
         let sql: std::sync::Arc<str> =

@@ -10,7 +10,7 @@ use netcert_rows::{EdgeMeasure, StoredPlan};
 
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use crate::results::names::{corridor_no, verdict_of};
 use crate::writer::{VehicleNo, Writer};
 
@@ -20,16 +20,16 @@ pub(crate) const PAGE_ROWS: usize = 1000;
 
 /// A stored certificate of an edge or a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kept {
-    packed: Packed,
+pub struct StoredCertificate {
+    packed: CompactCertificate,
     verdict: Verdict,
 }
 
 /// Stored plans by their places, to be written again unchanged.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct KeptPlans(BTreeMap<u32, Vec<u8>>);
+pub struct StoredPlans(BTreeMap<u32, Vec<u8>>);
 
-impl KeptPlans {
+impl StoredPlans {
     /// The plan of a place, for another place.
     #[must_use]
     pub fn at(&self, place: u32, now: u32) -> Option<StoredPlan> {
@@ -37,7 +37,7 @@ impl KeptPlans {
     }
 }
 
-impl Kept {
+impl StoredCertificate {
     /// The verdict.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -50,7 +50,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read, or a certificate is missing.
-    pub fn kept_edges(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Kept>, StoreError> {
+    pub fn kept_edges(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<StoredCertificate>, StoreError> {
         self.kept("certificate_compact", "need_cm, NULL, NULL", vehicle, policy)
     }
 
@@ -58,7 +58,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read, or a certificate is missing.
-    pub fn kept_turns(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Kept>, StoreError> {
+    pub fn kept_turns(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<StoredCertificate>, StoreError> {
         self.kept("turn_certificate_compact", "need_kerb_cm, need_flare_cm, path_no", vehicle, policy)
     }
 
@@ -66,8 +66,8 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn kept_plans(&mut self, vehicle: &str, policy: Policy) -> Result<[KeptPlans; 2], StoreError> {
-        let mut plans = |table| Ok(KeptPlans(self.packed_plans(table, vehicle, policy)?));
+    pub fn kept_plans(&mut self, vehicle: &str, policy: Policy) -> Result<[StoredPlans; 2], StoreError> {
+        let mut plans = |table| Ok(StoredPlans(self.packed_plans(table, vehicle, policy)?));
         Ok([plans("plan")?, plans("turn_plan")?])
     }
 
@@ -77,7 +77,7 @@ impl Database {
         more: &'static str,
         vehicle: &str,
         policy: Policy,
-    ) -> Result<Vec<Kept>, StoreError> {
+    ) -> Result<Vec<StoredCertificate>, StoreError> {
         let pages: Vec<String> = self.session.run(async |c| {
             let sql = format!(
                 "SELECT json_group_array(json_array(fid, verdict_no, rsc_mm, rsc_published_mm, hinge_margin_cdeg, shrink_milli, \
@@ -95,7 +95,7 @@ impl Database {
                 let packed = packed(row).filter(|packed| packed.fid as usize == expected);
                 let known = packed.and_then(|packed| Some((packed, verdict_of(i64::from(packed.verdict_no))?)));
                 let (packed, verdict) = known.ok_or_else(|| damaged(expected))?;
-                kept.push(Kept { packed, verdict });
+                kept.push(StoredCertificate { packed, verdict });
             }
         }
         Ok(kept)
@@ -117,16 +117,16 @@ impl Database {
     }
 }
 
-/// The columns of a certificate, in the order of [`Packed`].
+/// The columns of a certificate, in the order of [`CompactCertificate`].
 type Numbers = [Option<i64>; 11];
 
 /// `None` if a number is missing or out of range.
-fn packed(row: Numbers) -> Option<Packed> {
+fn packed(row: Numbers) -> Option<CompactCertificate> {
     fn narrow<T: TryFrom<i64>>(value: Option<i64>) -> Option<Option<T>> {
         value.map(T::try_from).transpose().ok()
     }
     let [fid, verdict_no, rsc, published, hinge, shrink, limiting_s, limiting_at, need, other_need, path_no] = row;
-    Some(Packed {
+    Some(CompactCertificate {
         fid: narrow(fid)??,
         verdict_no: narrow(verdict_no)??,
         rsc_mm: narrow(rsc)?,
@@ -145,8 +145,14 @@ impl Writer {
     ///
     /// # Errors
     /// A temporary file cannot be written.
-    pub fn kept(&mut self, vehicle: VehicleNo, policy: Policy, edge: u32, kept: &Kept) -> Result<(), StoreError> {
-        self.push(vehicle, policy, Packed { fid: edge + 1, ..kept.packed })
+    pub fn kept(
+        &mut self,
+        vehicle: VehicleNo,
+        policy: Policy,
+        edge: u32,
+        kept: &StoredCertificate,
+    ) -> Result<(), StoreError> {
+        self.push(vehicle, policy, CompactCertificate { fid: edge + 1, ..kept.packed })
     }
 
     /// Adds a certificate of an older database for the turn with this index.
@@ -157,9 +163,9 @@ impl Writer {
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
-        (turn, kept): (u32, &Kept),
+        (turn, kept): (u32, &StoredCertificate),
         plan: Option<StoredPlan>,
     ) -> Result<(), StoreError> {
-        self.push_turn(vehicle, policy, Packed { fid: turn + 1, ..kept.packed }, plan)
+        self.push_turn(vehicle, policy, CompactCertificate { fid: turn + 1, ..kept.packed }, plan)
     }
 }

@@ -33,7 +33,7 @@ pub enum Stage {
 pub type PartOfWork = (Stage, u32);
 
 /// The finished work of one run. The run must hold the lock of its unfinished database.
-pub struct Finished {
+pub struct Checkpoint {
     path: PathBuf,
     file: File,
     length: u64,
@@ -41,27 +41,27 @@ pub struct Finished {
     stretches: Vec<(PartOfWork, Range<u64>)>,
 }
 
-impl Finished {
+impl Checkpoint {
     /// Opens the file at `path`, or begins it. `identity` stands for everything on which the work depends.
     pub(crate) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-        let mut finished =
+        let mut checkpoint =
             Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0, stretches: Vec::new() };
         let mut head = [0; HEAD_BYTES as usize];
-        let known = finished.file.read_exact(&mut head).is_ok() && head[..8] == *MAGIC && head[8..] == *identity;
+        let known = checkpoint.file.read_exact(&mut head).is_ok() && head[..8] == *MAGIC && head[8..] == *identity;
         if known {
-            finished.length = HEAD_BYTES;
-            while let Some(bytes) = finished.block(finished.length) {
+            checkpoint.length = HEAD_BYTES;
+            while let Some(bytes) = checkpoint.block(checkpoint.length) {
                 let Ok((part, _)) = postcard::take_from_bytes(&bytes) else { break };
-                finished.note(part, (BLOCK_HEAD_BYTES + bytes.len()) as u64);
+                checkpoint.note(part, (BLOCK_HEAD_BYTES + bytes.len()) as u64);
             }
         }
-        finished.file.set_len(finished.length).map_err(|e| finished.error(e))?;
+        checkpoint.file.set_len(checkpoint.length).map_err(|e| checkpoint.error(e))?;
         if !known {
-            finished.append(&[&MAGIC[..], identity].concat())?;
-            finished.length = HEAD_BYTES;
+            checkpoint.append(&[&MAGIC[..], identity].concat())?;
+            checkpoint.length = HEAD_BYTES;
         }
-        Ok(finished)
+        Ok(checkpoint)
     }
 
     /// Whether there is any finished work.
@@ -186,7 +186,7 @@ impl Finished {
     }
 }
 
-impl Drop for Finished {
+impl Drop for Checkpoint {
     fn drop(&mut self) {
         if self.is_empty() {
             // An error is ignored, because the next run empties the file.
@@ -214,9 +214,9 @@ mod tests {
 
     const STROKES: PartOfWork = (Stage::Strokes, 2);
 
-    fn kept(finished: &mut Finished, part: PartOfWork) -> Batches {
+    fn kept(checkpoint: &mut Checkpoint, part: PartOfWork) -> Batches {
         let mut all = Batches::new();
-        finished
+        checkpoint
             .each(part, |batch: Vec<u32>| {
                 all.push(batch);
                 Ok::<(), StoreError>(())
@@ -229,27 +229,27 @@ mod tests {
     fn what_was_kept_comes_back_up_to_where_the_file_was_cut() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.done");
-        let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-        assert!(finished.is_empty());
+        let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
+        assert!(checkpoint.is_empty());
         let batches: Batches = (0..9).map(|k| (k..300 * k).collect()).collect();
         for batch in &batches {
-            finished.keep(STROKES, batch).unwrap();
-            finished.keep((Stage::Turns, 3), &batch[batch.len() / 2..]).unwrap();
-            finished.keep((Stage::Strokes, 7), &[9_u32]).unwrap();
+            checkpoint.keep(STROKES, batch).unwrap();
+            checkpoint.keep((Stage::Turns, 3), &batch[batch.len() / 2..]).unwrap();
+            checkpoint.keep((Stage::Strokes, 7), &[9_u32]).unwrap();
         }
-        drop(finished);
+        drop(checkpoint);
         let whole = std::fs::read(&path).unwrap();
         let mut last = 0;
         for cut in (40..=whole.len()).step_by(97).chain([whole.len()]) {
             std::fs::write(&path, &whole[..cut]).unwrap();
-            let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-            let strokes = kept(&mut finished, STROKES);
+            let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
+            let strokes = kept(&mut checkpoint, STROKES);
             assert_eq!(strokes, batches[..strokes.len()]);
             assert!(strokes.len() >= last);
             last = strokes.len();
             // It goes on behind the last whole block.
-            finished.keep(STROKES, &[1_u32]).unwrap();
-            assert_eq!(kept(&mut finished, STROKES).last().unwrap(), &[1]);
+            checkpoint.keep(STROKES, &[1_u32]).unwrap();
+            assert_eq!(kept(&mut checkpoint, STROKES).last().unwrap(), &[1]);
         }
         assert_eq!(last, 9);
     }
@@ -258,20 +258,20 @@ mod tests {
     fn damage_is_noticed_and_another_identity_begins_afresh() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.done");
-        let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-        (0..4).for_each(|k| finished.keep((Stage::Turns, 0), &[k, 5_u32, 6]).unwrap());
-        drop(finished);
+        let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
+        (0..4).for_each(|k| checkpoint.keep((Stage::Turns, 0), &[k, 5_u32, 6]).unwrap());
+        drop(checkpoint);
         let whole = std::fs::read(&path).unwrap();
         for at in 40..whole.len() {
             let mut bytes = whole.clone();
             bytes[at] ^= 0x10;
             std::fs::write(&path, bytes).unwrap();
-            let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-            let turns = kept(&mut finished, (Stage::Turns, 0));
+            let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
+            let turns = kept(&mut checkpoint, (Stage::Turns, 0));
             assert!(turns.len() < 4 && turns.iter().zip(0..).all(|(batch, k)| *batch == [k, 5, 6]));
         }
         std::fs::write(&path, &whole).unwrap();
-        assert!(Finished::open(path.clone(), &[8; 32]).unwrap().is_empty());
+        assert!(Checkpoint::open(path.clone(), &[8; 32]).unwrap().is_empty());
         assert!(!path.exists(), "an empty file is removed");
     }
 }

@@ -9,7 +9,7 @@ use crate::results::names::verdict_no;
 
 /// A row of `certificate_compact` without vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Packed {
+pub(crate) struct CompactCertificate {
     pub(crate) fid: u32,
     pub(crate) verdict_no: u8,
     pub(crate) rsc_mm: Option<i32>,
@@ -24,7 +24,7 @@ pub(crate) struct Packed {
     pub(crate) path_no: Option<i64>,
 }
 
-impl Packed {
+impl CompactCertificate {
     /// Adds the columns that certificates of edges and turns have in common, from `fid` on.
     pub(crate) fn add_to(&self, bulk: &mut Bulk) {
         bulk.add(self.fid);
@@ -39,7 +39,7 @@ impl Packed {
     }
 }
 
-impl Packed {
+impl CompactCertificate {
     /// Packs the certificate of an edge. The error says why it may not be stored.
     pub(crate) fn edge(certificate: &EdgeCertificate) -> Result<Self, String> {
         let needs_cm = [need_cm(certificate.need_width_m), None];
@@ -137,8 +137,8 @@ mod tests {
         }
     }
 
-    fn pack(verdict: Verdict, m: Measured) -> Result<Packed, String> {
-        Packed::conclusion(&Conclusion { verdict, measured: Some(m) }, 6)
+    fn pack(verdict: Verdict, m: Measured) -> Result<CompactCertificate, String> {
+        CompactCertificate::conclusion(&Conclusion { verdict, measured: Some(m) }, 6)
     }
 
     const UNSAFE: Verdict = Verdict::Unsafe(UnsafeReason::Width);
@@ -178,7 +178,7 @@ mod tests {
         assert!(pack(Verdict::Safe, measured(0.1, -1e-9, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
-        assert!(Packed::conclusion(&Conclusion::bare(Verdict::Safe), 0).is_err());
+        assert!(CompactCertificate::conclusion(&Conclusion::bare(Verdict::Safe), 0).is_err());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use netcert_rows::Bounds;
 
 use crate::file::bulk::Bulk;
 use crate::file::styles::{self, Shows};
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use crate::results::names::{SAFE, corridor_no, width_columns};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -23,7 +23,7 @@ const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdic
 pub(crate) type Fault = (u32, &'static str);
 
 /// Checks that the rows, sorted by edge, have every edge exactly once.
-pub(crate) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), Fault> {
+pub(crate) fn check_complete(rows: &[CompactCertificate], edges: u32) -> Result<(), Fault> {
     let mut complete = Complete::new(edges);
     rows.iter().for_each(|row| complete.look_at(row));
     complete.finish().map(|_| ())
@@ -41,7 +41,7 @@ impl Complete {
         Self { edges, rows: 0, fault: None }
     }
 
-    pub(crate) fn look_at(&mut self, row: &Packed) {
+    pub(crate) fn look_at(&mut self, row: &CompactCertificate) {
         self.rows += 1;
         if row.fid != self.rows && self.fault.is_none() {
             let twice = row.fid < self.rows;
@@ -66,7 +66,7 @@ impl Complete {
 pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
-    rows: impl Iterator<Item = io::Result<Packed>>,
+    rows: impl Iterator<Item = io::Result<CompactCertificate>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 11);
     for row in rows {
@@ -98,7 +98,7 @@ impl Set<'_> {
     pub(crate) async fn insert(
         &self,
         c: &mut SqliteConnection,
-        rows: impl Iterator<Item = io::Result<Packed>>,
+        rows: impl Iterator<Item = io::Result<CompactCertificate>>,
         edges: u32,
     ) -> Sql<Result<(), Fault>> {
         let corridor = corridor_no(self.policy);

@@ -19,7 +19,7 @@ use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
 use crate::file::styles::{self, Shows};
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use crate::results::names::{corridor_no, of_kind};
 use crate::results::numbers::{self, centimetres};
 use crate::results::plans;
@@ -48,15 +48,15 @@ pub struct TurnSet<'a> {
 
 /// A packed set: rows in order, and the plans that the certificates were made for.
 pub(crate) struct PackedSet {
-    pub(crate) rows: Vec<Packed>,
+    pub(crate) rows: Vec<CompactCertificate>,
     pub(crate) plans: Vec<StoredPlan>,
 }
 
 impl TurnSet<'_> {
     /// Packs the set. The error names a turn whose certificate is missing or whose numbers do not support its verdict.
     pub(crate) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
-        let pack = |turn: &TurnCertificate| Packed::turn(turn).map_err(|why| (turn.turn, why));
-        let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
+        let pack = |turn: &TurnCertificate| CompactCertificate::turn(turn).map_err(|why| (turn.turn, why));
+        let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<CompactCertificate>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         sets::check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;
         let plans = self.certificates.iter_mut().filter_map(|turn| turn.plan.take()).collect();
@@ -153,7 +153,7 @@ pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, t
 pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
-    rows: impl Iterator<Item = io::Result<Packed>>,
+    rows: impl Iterator<Item = io::Result<CompactCertificate>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
@@ -173,7 +173,7 @@ pub(crate) async fn insert_rows(
 pub(crate) async fn insert(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
-    rows: impl Iterator<Item = io::Result<Packed>>,
+    rows: impl Iterator<Item = io::Result<CompactCertificate>>,
     plans: impl Iterator<Item = io::Result<StoredPlan>>,
     turns: u32,
 ) -> Sql<Result<(), Fault>> {

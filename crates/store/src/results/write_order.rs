@@ -8,7 +8,7 @@ use std::path::Path;
 use netcert_rows::StoredPlan;
 
 use crate::file::part::sorter;
-use crate::results::compact::Packed;
+use crate::results::compact::CompactCertificate;
 use netcert_files::sorter::{Sorted, Sorter};
 
 /// Vehicle number and corridor number.
@@ -18,19 +18,19 @@ pub(crate) type SetNo = (u32, u8);
 type Key = (u32, u8, u32);
 
 /// Certificates of edges or of turns, with their plans.
-pub(crate) struct Waiting {
-    certificates: Sorter<Key, Packed>,
+pub(crate) struct CertificateSorter {
+    certificates: Sorter<Key, CompactCertificate>,
     plans: Sorter<Key, StoredPlan>,
 }
 
-impl Waiting {
+impl CertificateSorter {
     /// Nothing waits yet. Temporary files are made at `path` with a word after it.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
         let certificates = sorter(path, "-certificates")?;
         Ok(Self { certificates, plans: sorter(path, "-plans")? })
     }
 
-    pub(crate) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: Packed) -> io::Result<()> {
+    pub(crate) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: CompactCertificate) -> io::Result<()> {
         self.certificates.push((vehicle, corridor, packed.fid), &packed)
     }
 
@@ -47,7 +47,7 @@ impl Waiting {
         };
         for row in self.certificates.sorted()? {
             let ((vehicle, corridor, fid), packed) = row?;
-            new.certificate((vehicle, corridor), Packed { fid: number(fid - 1)? + 1, ..packed })?;
+            new.certificate((vehicle, corridor), CompactCertificate { fid: number(fid - 1)? + 1, ..packed })?;
         }
         for row in self.plans.sorted()? {
             let ((vehicle, corridor, at), plan) = row?;
@@ -57,7 +57,7 @@ impl Waiting {
     }
 
     /// Certificates and plans, each set by set.
-    pub(crate) fn sorted(self) -> io::Result<(BySet<Packed>, BySet<StoredPlan>)> {
+    pub(crate) fn sorted(self) -> io::Result<(BySet<CompactCertificate>, BySet<StoredPlan>)> {
         Ok((BySet(self.certificates.sorted()?.peekable()), BySet(self.plans.sorted()?.peekable())))
     }
 }
@@ -99,14 +99,14 @@ mod tests {
     #[test]
     fn sets_come_back_in_order_whatever_the_order_they_came_in() {
         let folder = tempfile::tempdir().unwrap();
-        let mut waiting = Waiting::create(&folder.path().join("edges")).unwrap();
+        let mut waiting = CertificateSorter::create(&folder.path().join("edges")).unwrap();
         let edges = 10_007_u32;
         for i in 0..edges {
             for set in [(3, 0), (1, 2), (1, 0)] {
                 // 4001 and 10,007 share no factor, so every edge comes once, in a scattered order.
                 let edge = (i * 4001 + set.0) % edges;
                 let none = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut));
-                let packed = Packed::conclusion(&none, edge).unwrap();
+                let packed = CompactCertificate::conclusion(&none, edge).unwrap();
                 waiting.certificate(set, packed).unwrap();
                 if edge.is_multiple_of(10) {
                     waiting.plan(set, &StoredPlan::new(edge, &[1, 2]).unwrap()).unwrap();

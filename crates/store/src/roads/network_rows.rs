@@ -78,14 +78,14 @@ impl NetworkRows {
 }
 
 /// What portions and the reader bring beside the network.
-pub(crate) struct Gathered {
+pub(crate) struct MapRows {
     pub(crate) restrictions: Vec<PortionRestriction>,
     pub(crate) areas: Vec<Area>,
     /// By kind and object, the order of drawing.
     pub(crate) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
 }
 
-impl Gathered {
+impl MapRows {
     /// No rows yet. Temporary files are made beside `path`.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
         Ok(Self { restrictions: Vec::new(), areas: Vec::new(), backdrop: sorter(path, "-backdrop")? })

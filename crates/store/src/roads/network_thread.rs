@@ -12,14 +12,14 @@ use crate::roads::network_rows::NetworkRows;
 use crate::roads::network_write::{self, Written};
 
 /// A new database, as far as it has come.
-pub(crate) enum Growing {
+pub(crate) enum NewNetwork {
     /// Rows of the network still come.
     Gathering(Session, Box<NetworkRows>),
     /// The rows are complete.
     Writing(Writing),
 }
 
-impl Growing {
+impl NewNetwork {
     /// The rows, while they still come.
     pub(crate) fn rows(&mut self) -> io::Result<&mut NetworkRows> {
         match self {
