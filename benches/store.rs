@@ -10,9 +10,7 @@ use netcert::network::Portion;
 use netcert::osm::facts::Policy;
 use netcert::settings::Settings;
 use netcert::store::{Database, QueryOptions, Run, VehicleRecord};
-
-#[path = "../tests/support/store_network.rs"]
-mod store_network;
+use netcert_testing::store_network;
 
 /// User and system time of all threads of this process, seconds; 0 without Linux's `/proc`. It shows whether the
 /// machine is busy.

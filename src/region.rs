@@ -24,8 +24,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Query
 ///
 /// ```
-/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
-/// # let (_folder, path) = setup::demo_region(false);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region(false);
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;
 /// use netcert::store::QueryOptions;
@@ -47,9 +46,8 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Route
 ///
 /// ```
-/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
-/// # let (_folder, path) = setup::demo_region(true);
-/// # let [from, to] = setup::two_places(&path);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region(true);
+/// # let [from, to] = netcert_testing::documentation::two_places(&path);
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;
 /// use netcert::route::{Measure, Question};
@@ -74,8 +72,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Explain
 ///
 /// ```
-/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
-/// # let (_folder, path) = setup::demo_region(false);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region(false);
 /// use netcert::explain::words;
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;

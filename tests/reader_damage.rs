@@ -3,13 +3,6 @@
 #![allow(unsafe_code)] // An allocator that counts.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
-#[path = "support/accounts.rs"]
-mod accounts;
-#[path = "support/extracts.rs"]
-mod extracts;
-#[path = "support/skip.rs"]
-mod skip;
-
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     fs::{self, OpenOptions},
@@ -17,8 +10,6 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use accounts::assert_adds_up;
-use extracts::extract;
 use netcert::osm::{
     Extract, LonLat,
     pbf::{
@@ -26,6 +17,8 @@ use netcert::osm::{
         write::{self, NodeRecord, WayRecord},
     },
 };
+use netcert_testing::accounts::assert_adds_up;
+use netcert_testing::extracts::extract;
 use osmpbfreader::osmformat;
 use protobuf::Message;
 

@@ -2,18 +2,17 @@
 //! turns through drawn crossings, whatever their RSC. A planner of the oracle's own says how many of the turns that can
 //! be driven are certified.
 
-use crate::oracle;
-use crate::support::catalogue::catalogued;
+use netcert_testing::catalogue::catalogued;
 
 use netcert::check::{Chain, SpanClaim, Subject, Weight, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
-use oracle::area_attack::{Found, attack_areas};
-use oracle::claim::claim;
-use oracle::crossing::{Crossing, Manoeuvre};
-use oracle::draw::Draw;
-use oracle::planner::{drivable, room_m};
+use netcert_testing::oracle::area_attack::{Found, attack_areas};
+use netcert_testing::oracle::claim::claim;
+use netcert_testing::oracle::crossing::{Crossing, Manoeuvre};
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::planner::{drivable, room_m};
 use rayon::prelude::*;
 
 const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"];

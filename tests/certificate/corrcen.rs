@@ -16,8 +16,8 @@ use optimum::{Merit, Nominal, optimum};
 use problem::{Place, Problem};
 use rayon::prelude::*;
 
-use crate::support::demo::demo;
-use crate::support::extracts::extract;
+use netcert_testing::demo::demo;
+use netcert_testing::extracts::extract;
 
 /// Merit by the RSC, with all bounds deducted.
 struct Certified<'a> {

@@ -4,16 +4,14 @@
 //! Corridors here bend and change their widths from the first to the last station. The vehicles have features that
 //! matter at an end: long overhangs, hitches far behind or ahead of an axle, and small hinge limits.
 
-use crate::oracle;
-
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Plan, certify_plan};
 use netcert::vehicle::{Unit, Vehicle};
-use oracle::attack::{self, Attack};
-use oracle::claim::{Claim, Place, certify, of};
-use oracle::draw::Draw;
-use oracle::path::Path;
-use oracle::road;
+use netcert_testing::oracle::attack::{self, Attack};
+use netcert_testing::oracle::claim::{Claim, Place, certify, of};
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::path::Path;
+use netcert_testing::oracle::road;
 use rayon::prelude::*;
 
 /// Errors of RK4 at 0.1 m and of the plan's cubic, as in `soundness.rs`. In bends of 8 m the cubic's error is larger.

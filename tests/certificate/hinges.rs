@@ -1,19 +1,17 @@
 //! Hinge margins where a bend begins and ends between two stations (docs/proof.md, section 10). Curvature that is linear from station to
 //! station does not lead to the next station there. The course is then steepest between stations.
 
-use crate::oracle;
-
 use netcert::check::{Chain, SpanClaim, Subject, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
-use oracle::adversary::{Bounds, hinge_kernel};
-use oracle::attack;
-use oracle::claim::{Claim, claim};
-use oracle::draw::{Bends, curvature_at};
-use oracle::fleet;
-use oracle::path::{along, direction, dot, left_of, wrapped};
-use oracle::simulator::{Disturbance, Drive};
+use netcert_testing::oracle::adversary::{Bounds, hinge_kernel};
+use netcert_testing::oracle::attack;
+use netcert_testing::oracle::claim::{Claim, claim};
+use netcert_testing::oracle::draw::{Bends, curvature_at};
+use netcert_testing::oracle::fleet;
+use netcert_testing::oracle::path::{along, direction, dot, left_of, wrapped};
+use netcert_testing::oracle::simulator::{Disturbance, Drive};
 
 /// Metres between stations, as on the map's turns.
 const SPACING_M: f64 = 0.5;

@@ -8,15 +8,12 @@ mod ends;
 mod errata;
 mod hinges;
 mod no_curve;
-#[path = "../oracle/mod.rs"]
-mod oracle;
 mod properties;
 mod published_values;
 mod routes;
 mod simulator;
 mod soundness;
 mod stations;
-mod support;
 mod tubes;
 mod verify_agreement;
 mod verify_files;

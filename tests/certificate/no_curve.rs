@@ -5,7 +5,7 @@ use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{Model, Options, SpanResult, certify, certify_planned};
 use netcert::stop::Stop;
 
-use crate::support::catalogue::catalogued;
+use netcert_testing::catalogue::catalogued;
 
 fn bend() -> Corridor {
     let profile = CurvatureProfile::new(0.5).straight(60.0).clothoid(0.02, 10.0).arc(0.02, 20.0).clothoid(0.0, 10.0);

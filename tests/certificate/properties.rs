@@ -3,15 +3,13 @@
 //! The plan is fixed: `max_shift_m` is 0, so the steer axle follows the centreline. Where γ matters, corridors are wide
 //! enough for γ = 1.
 
-use crate::oracle;
-
 use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{self, Certificate, Model, Options, SpanResult};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
-use oracle::draw::{self, Bends, Draw};
-use oracle::path::{along, direction, left_of};
-use oracle::{fleet, road};
+use netcert_testing::oracle::draw::{self, Bends, Draw};
+use netcert_testing::oracle::path::{along, direction, left_of};
+use netcert_testing::oracle::{fleet, road};
 
 const CASES: u64 = 150;
 const FIXED: Options = Options { max_shift_m: 0.0, correction_sweeps: 0 };

@@ -5,14 +5,12 @@
 //! Sources: AASHTO Green Book 2011/2018 minimum turns; Directive 96/53/EC with 97/27/EC 7.6.1; FHWA MAP-21 low-speed
 //! offtracking path; Australian PBS low-speed swept path manoeuvre.
 
-use crate::oracle;
-
 use netcert::stet::motion::{Pose, sweep_path};
 use netcert::stet::steady_offtracking;
 use netcert::vehicle::Vehicle;
-use oracle::fleet;
-use oracle::simulator::Drive;
-use oracle::turns::{self, Turn};
+use netcert_testing::oracle::fleet;
+use netcert_testing::oracle::simulator::Drive;
+use netcert_testing::oracle::turns::{self, Turn};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const FOOT_M: f64 = 0.3048;

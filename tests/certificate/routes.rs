@@ -5,10 +5,9 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use crate::oracle;
-use crate::support::demo::demo;
-use crate::support::extracts::extract;
-use crate::support::routing::{Driver, Region};
+use netcert_testing::demo::demo;
+use netcert_testing::extracts::extract;
+use netcert_testing::routing::{Driver, Region};
 
 use netcert::network::MovementKind;
 use netcert::osm::LonLat;
@@ -17,11 +16,11 @@ use netcert::route::{Measure, PartKind, Position, Question, Route};
 use netcert::stet::{self, Options};
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
-use oracle::area_attack::Found;
-use oracle::attack;
-use oracle::claim::{self, Claim};
-use oracle::draw::Draw;
-use oracle::journey::{Journey, Part};
+use netcert_testing::oracle::area_attack::Found;
+use netcert_testing::oracle::attack;
+use netcert_testing::oracle::claim::{self, Claim};
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::journey::{Journey, Part};
 use rayon::prelude::*;
 
 /// Places that are attacked in each area and on each stretch between areas.

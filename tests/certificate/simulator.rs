@@ -1,14 +1,14 @@
 //! Tests of the oracle alone: its order of accuracy, its adversary's reach, its roads. `soundness.rs` compares it with
 //! the certifier.
 
-use crate::oracle;
+use netcert_testing::oracle;
 
-use oracle::adversary::{Bounds, Target, kernel};
-use oracle::draw::{self, Draw};
-use oracle::path::{Path, V2, along, dot, left_of};
-use oracle::road::{self, Road};
-use oracle::simulator::{Disturbance, Drive, MAX_UNITS};
-use oracle::{draw::Bends, fleet};
+use netcert_testing::oracle::adversary::{Bounds, Target, kernel};
+use netcert_testing::oracle::draw::{self, Draw};
+use netcert_testing::oracle::path::{Path, V2, along, dot, left_of};
+use netcert_testing::oracle::road::{self, Road};
+use netcert_testing::oracle::simulator::{Disturbance, Drive, MAX_UNITS};
+use netcert_testing::oracle::{draw::Bends, fleet};
 
 fn plan(bends: &Bends) -> Vec<V2> {
     let kappa = draw::curvature(bends);

@@ -4,14 +4,12 @@
 //! Numerical allowance: RK4 at 0.1 m is within 2e-6 m, and the plan's cubic is within 1e-5 m of a 12.5 m circle;
 //! together 2e-5 m.
 
-use crate::oracle;
-
 use netcert::corridor::Corridor;
 use netcert::vehicle::Vehicle;
-use oracle::attack::{self, Attack, Outcome};
-use oracle::claim::{Claim, certify};
-use oracle::draw::{self, Bends, Draw};
-use oracle::fleet;
+use netcert_testing::oracle::attack::{self, Attack, Outcome};
+use netcert_testing::oracle::claim::{Claim, certify};
+use netcert_testing::oracle::draw::{self, Bends, Draw};
+use netcert_testing::oracle::fleet;
 use rayon::prelude::*;
 
 const ALLOWANCE_M: f64 = 2e-5;

@@ -2,15 +2,14 @@
 //! follow curves and not chords. On the inside of a bend feet move several times as far as their points.
 
 use crate::ends::{attacked, refuted, unit, vehicle};
-use crate::oracle;
 
 use netcert::corridor::Corridor;
 use netcert::stet::Options;
 use netcert::vehicle::Vehicle;
-use oracle::claim::{certify, claim};
-use oracle::draw::Draw;
-use oracle::path::Path;
-use oracle::road;
+use netcert_testing::oracle::claim::{certify, claim};
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::path::Path;
+use netcert_testing::oracle::road;
 use rayon::prelude::*;
 
 fn cases() -> u64 {

@@ -1,17 +1,15 @@
 //! Tests of tubes alone (docs/proof.md, sections 3 to 6). To first order they are the exact reach of the disturbances.
 //! At full size an adversary matched to the time-varying kernel of the attacked axle never leaves them.
 
-use crate::oracle;
-
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Tube, certify, tubes};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
-use oracle::adversary::{Bounds, Kernel, Target, kernel};
-use oracle::draw::{self, Bends, Draw};
-use oracle::fleet;
-use oracle::path::{Path, V2, direction, dot, left_of};
-use oracle::simulator::{Disturbance, Drive, Run};
+use netcert_testing::oracle::adversary::{Bounds, Kernel, Target, kernel};
+use netcert_testing::oracle::draw::{self, Bends, Draw};
+use netcert_testing::oracle::fleet;
+use netcert_testing::oracle::path::{Path, V2, direction, dot, left_of};
+use netcert_testing::oracle::simulator::{Disturbance, Drive, Run};
 use rayon::prelude::*;
 
 const STEPS: usize = 10;

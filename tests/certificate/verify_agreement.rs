@@ -1,16 +1,14 @@
 //! The checker compared with prover and oracle: no false alarms on random corridors, and no confirmation of what an
 //! adversary has refuted.
 
-use crate::oracle;
-
 use netcert::check::{Chain, SpanClaim, Subject, TOLERANCE_M, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Planned, certify_spans};
 use netcert::vehicle::Vehicle;
-use oracle::attack;
-use oracle::claim::certify;
-use oracle::draw::{self, Draw};
-use oracle::fleet;
+use netcert_testing::oracle::attack;
+use netcert_testing::oracle::claim::certify;
+use netcert_testing::oracle::draw::{self, Draw};
+use netcert_testing::oracle::fleet;
 use rayon::prelude::*;
 
 fn planned(corridor: &Corridor, vehicle: &Vehicle, spans: &[std::ops::Range<usize>]) -> Planned {

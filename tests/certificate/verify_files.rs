@@ -1,7 +1,7 @@
 //! Certificate files and the checker, on random vehicles and corridors. Every member of an honest file is confirmed. A
 //! changed and newly sealed file is refuted.
 
-use crate::oracle::files::{Case, case};
+use netcert_testing::oracle::files::{Case, case};
 
 use netcert::check::{Outcome, Report, certificate};
 use netcert::seal::sealed;

@@ -10,9 +10,9 @@ use netcert::osm::pbf::write::{self, NodeRecord, WayRecord};
 use netcert::osm::{Extract, LonLat};
 use netcert::turns::{KerbSource, Reach, TurnCorridors, turn_corridors};
 
-use crate::support::ascii_map::{AsciiMap, built, id_of, no_sections, offset, somewhere};
-use crate::support::extracts::extract;
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, offset, somewhere};
+use netcert_testing::extracts::extract;
+use netcert_testing::junctions::Drawn;
 
 /// Two roads of 7.5 m. A lorry from E to C turns round the corner in the south-east.
 fn cross() -> AsciiMap {

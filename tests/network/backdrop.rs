@@ -8,8 +8,8 @@ use netcert::osm::facts::{BackdropForm, BackdropKind};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Backdrop, BackdropShape, LonLat};
 
-use crate::support::extracts;
-use crate::support::skip::skipped;
+use netcert_testing::extracts;
+use netcert_testing::skip::skipped;
 
 fn area_deg2(ring: &[LonLat]) -> f64 {
     let origin = ring[0].degrees();

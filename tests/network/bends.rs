@@ -3,16 +3,15 @@
 //!
 //! Widths are tagged, and kerb radii are the test's own.
 
-use crate::oracle;
-use crate::support::ascii_map::{self, AsciiMap};
-use crate::support::catalogue::catalogued;
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{self, AsciiMap};
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
 
 use netcert::network::MovementKind;
 use netcert::osm::facts::Policy;
 use netcert::turns::Reach;
-use oracle::draw::Draw;
-use oracle::fight;
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::fight;
 
 const ROAD: &str = "highway=secondary width=8";
 

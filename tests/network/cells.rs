@@ -17,9 +17,9 @@ use netcert::stet::Model;
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 
-use crate::support::ascii_map::{offset, way_facts};
-use crate::support::catalogue::catalogued;
-use crate::support::extracts;
+use netcert_testing::ascii_map::{offset, way_facts};
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::extracts;
 
 /// The halo beyond a file's cells and their neighbours, metres.
 const HALO_M: f64 = 1000.0;

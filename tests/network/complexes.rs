@@ -3,11 +3,10 @@
 //!
 //! Two streets meet a road from both sides, some metres apart. Widths are tagged, and kerb radii are the test's own.
 
-use crate::oracle;
-use crate::support::ascii_map::{self, AsciiMap, id_of};
-use crate::support::catalogue::catalogued;
-use crate::support::junctions::Drawn;
-use crate::support::routing::Region;
+use netcert_testing::ascii_map::{self, AsciiMap, id_of};
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
+use netcert_testing::routing::Region;
 
 use geo::{BooleanOps as _, BoundingRect as _, Distance as _, Euclidean};
 use netcert::network::PassageKind;
@@ -16,8 +15,8 @@ use netcert::osm::facts::Policy;
 use netcert::route::{Measure, PartKind, Position, Question, passes_over};
 use netcert::stop::Stop;
 use netcert::turns::{Kerbs, Reach};
-use oracle::draw::Draw;
-use oracle::fight;
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::fight;
 
 /// The road W–E with a street to N and one to S, which meet it `apart_m` from each other.
 fn staggered(apart_m: f64, road: &str, streets: &str) -> AsciiMap {

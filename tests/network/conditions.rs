@@ -1,7 +1,7 @@
 //! Routes under conditions over drawn junctions.
 
-use crate::support::ascii_map;
-use crate::support::routing;
+use netcert_testing::ascii_map;
+use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
 use netcert::evidence::Quantity;

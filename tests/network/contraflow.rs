@@ -9,9 +9,9 @@ use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
 use netcert::verdict::{ForbiddenReason, Verdict};
 
-use crate::support::ascii_map::{AsciiMap, edge};
-use crate::support::catalogue::catalogued;
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{AsciiMap, edge};
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
 
 const POLICIES: [Policy; 3] = [Policy::Lane, Policy::Direction, Policy::Carriageway];
 

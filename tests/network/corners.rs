@@ -2,9 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::oracle;
-use crate::support::ascii_map;
-use crate::support::routing;
+use netcert_testing::ascii_map;
+use netcert_testing::routing;
 
 use ascii_map::{AsciiMap, built, edge, edges, id_of, strokes};
 use netcert::network::{MovementKind, Network};
@@ -14,7 +13,7 @@ use netcert::route::{Answer, Measure, PartKind, Position, Question};
 use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::Verdict;
-use oracle::whole;
+use netcert_testing::oracle::whole;
 use routing::Region;
 
 const ROAD: &str = "highway=residential";

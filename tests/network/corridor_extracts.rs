@@ -1,7 +1,7 @@
 //! Every road of a real extract, with one stroke per way. Corridors are finite and within tolerance, and few roads
 //! cannot be driven at all. Those few are mountain hairpins whose inner lane has a radius of less than 2 m.
 
-use crate::support::extracts::extract;
+use netcert_testing::extracts::extract;
 
 use std::collections::HashMap;
 

@@ -1,7 +1,7 @@
 //! Roads that are open to a destination only: at the ends of a way, and not in its middle.
 
-use crate::support::ascii_map;
-use crate::support::catalogue::catalogued;
+use netcert_testing::ascii_map;
+use netcert_testing::catalogue::catalogued;
 
 use ascii_map::{AsciiMap, built, node_of};
 use netcert::network::Network;

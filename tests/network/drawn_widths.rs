@@ -9,9 +9,9 @@ use netcert::stet::Model;
 use netcert::verdict::Verdict;
 use netcert::watch;
 
-use super::support::ascii_map::AsciiMap;
-use super::support::catalogue::catalogued;
-use super::support::junctions::Drawn;
+use netcert_testing::ascii_map::AsciiMap;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
 
 /// Networks that are drawn, and polls of the guard that each certificate of an edge or turn may take. Measured: 1,950 at most.
 const NETWORKS: u64 = 24;

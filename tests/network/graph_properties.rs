@@ -1,7 +1,7 @@
 //! Properties of every network: random tangles of roads with missing nodes, doubled places and reversals.
 
 // The drawing functions are for `maps.rs`.
-use crate::support::ascii_map;
+use netcert_testing::ascii_map;
 
 use std::collections::{BTreeMap, BTreeSet};
 

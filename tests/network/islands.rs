@@ -12,8 +12,8 @@ use netcert::store::{Database, Run};
 use netcert::turns::{Reach, TurnCorridors};
 use netcert::verdict::{UnsafeReason, Verdict};
 
-use crate::support::ascii_map::{AsciiMap, built, no_sections, somewhere};
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{AsciiMap, built, no_sections, somewhere};
+use netcert_testing::junctions::Drawn;
 
 const LORRY: &str = "EU-SEMI16.5";
 const ISLAND: &str = "traffic_calming=island";

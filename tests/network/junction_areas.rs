@@ -8,8 +8,8 @@ use netcert::osm::LonLat;
 use netcert::osm::facts::Policy;
 use netcert::turns::{JunctionArea, KerbSource, Reach, junction_areas, junction_nodes};
 
-use crate::support::ascii_map::{AsciiMap, id_of};
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{AsciiMap, id_of};
+use netcert_testing::junctions::Drawn;
 
 fn cross(width: &str) -> AsciiMap {
     AsciiMap::drawn(

@@ -21,15 +21,12 @@ mod malformed;
 mod maps;
 mod monotone;
 mod needs;
-#[path = "../oracle/mod.rs"]
-mod oracle;
 mod portions;
 mod reader_rules;
 mod restrictions;
 mod roundabouts;
 mod route_junctions;
 mod routes;
-mod support;
 mod tapers;
 mod titles;
 mod turns;

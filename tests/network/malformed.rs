@@ -3,8 +3,8 @@
 //! The index says for each file whether it may be read (OK), read with counted losses (SKIP) or must be refused (ERR).
 //! The table below gives the exact outcome.
 
-use crate::support::accounts::assert_adds_up;
-use crate::support::extracts::folder_with;
+use netcert_testing::accounts::assert_adds_up;
+use netcert_testing::extracts::folder_with;
 
 use std::{
     collections::BTreeMap,

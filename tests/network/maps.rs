@@ -1,9 +1,9 @@
 //! Networks drawn in ASCII: the map, its tags, and the expected edges and strokes.
 //!
 //! Edges are written by their end nodes, strokes by their nodes in driving order, with the approach before `>` (see
-//! `support/ascii_map.rs`). Ways that are only scenery are two-way residential roads.
+//! `netcert_testing::ascii_map`). Ways that are only scenery are two-way residential roads.
 
-use crate::support::ascii_map;
+use netcert_testing::ascii_map;
 
 use ascii_map::{AsciiMap, built, edges, id_of, no_sections, somewhere, strokes};
 use netcert::network::{MovementKind, Network, NetworkAccount, StrokeOptions, build_with};

@@ -7,9 +7,9 @@ use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
 use netcert::verdict::Verdict;
 
-use super::support::ascii_map::AsciiMap;
-use super::support::catalogue::catalogued;
-use super::support::junctions::Drawn;
+use netcert_testing::ascii_map::AsciiMap;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
 
 /// A crossing of two roads that meet at an angle, in degrees.
 fn crossing(angle_deg: f64, kerb_m: f64, classes: [&str; 2]) -> Drawn {

@@ -14,9 +14,9 @@ use netcert::stet::Model;
 use netcert::turns::{Reach, StrokeLine, turn_facts, turn_on};
 use netcert::verdict::{UnknownReason, UnsafeReason, Verdict};
 
-use super::support::catalogue::catalogued;
-use super::support::extracts;
-use super::support::routing::Region;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::extracts;
+use netcert_testing::routing::Region;
 
 fn certified(network: &Network, model: &Model, settings: &Settings) -> Vec<EdgeCertificate> {
     let mut all = Vec::new();

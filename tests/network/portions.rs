@@ -8,8 +8,8 @@ use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat};
 
 use crate::cells::{ORIGIN, drawn};
-use crate::support::ascii_map::offset;
-use crate::support::extracts;
+use netcert_testing::ascii_map::offset;
+use netcert_testing::extracts;
 
 type Places<'c> = Box<dyn Fn(LonLat) -> Place + Sync + 'c>;
 type Sections<'c> = Box<dyn Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;

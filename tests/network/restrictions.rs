@@ -3,8 +3,8 @@
 //! A movement is written by its nodes: `ABC` from A over B to C. `!` marks a movement that a restriction over a node
 //! forbids, `-` a straight continuation, `*` a U-turn.
 
-use crate::support::ascii_map;
-use crate::support::extracts::extract;
+use netcert_testing::ascii_map;
+use netcert_testing::extracts::extract;
 
 use ascii_map::{AsciiMap, built, id_of, no_sections, node_of, somewhere};
 use netcert::network::{MovementKind, Network, build};

@@ -2,11 +2,10 @@
 //!
 //! Widths are tagged, and kerb radii are the test's own.
 
-use crate::oracle;
-use crate::support::ascii_map::{self, AsciiMap, id_of};
-use crate::support::catalogue::catalogued;
-use crate::support::junctions::Drawn;
-use crate::support::roundabout::{RING, map};
+use netcert_testing::ascii_map::{self, AsciiMap, id_of};
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::Drawn;
+use netcert_testing::roundabout::{RING, map};
 
 use geo::{Distance as _, Euclidean};
 use netcert::explain::explain_turn;
@@ -18,19 +17,17 @@ use netcert::stet::Model;
 use netcert::stop::Stop;
 use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
-use oracle::draw::Draw;
-use oracle::fight;
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::fight;
 
-impl Drawn {
-    fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Self {
-        let tags = |width: f64| format!("highway=secondary width={width}");
-        Self::new(&map(radius_m, &tags(ring_m), &tags(arm_m), false), false, kerb_m)
-    }
+fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Drawn {
+    let tags = |width: f64| format!("highway=secondary width={width}");
+    Drawn::new(&map(radius_m, &tags(ring_m), &tags(arm_m), false), false, kerb_m)
 }
 
 #[test]
 fn every_arm_leads_to_every_other_one() {
-    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let drawn = ring(20.0, 8.0, 8.0, 12.0);
     let passages = drawn.passages();
     assert_eq!(passages.len(), 12);
     // The turns onto and off the ring still exist.
@@ -55,19 +52,17 @@ fn every_arm_leads_to_every_other_one() {
 
 #[test]
 fn who_gets_straight_over_depends_on_the_ring() {
-    let semi =
-        |radius_m, ring_m, arm_m, policy| Drawn::ring(radius_m, ring_m, arm_m, 12.0).safe("WE", policy, "EU-SEMI16.5");
+    let semi = |radius_m, ring_m, arm_m, policy| ring(radius_m, ring_m, arm_m, 12.0).safe("WE", policy, "EU-SEMI16.5");
     assert!(semi(40.0, 8.0, 8.0, Policy::Carriageway), "a large ring with room");
     assert!(semi(40.0, 9.0, 14.0, Policy::Direction), "the same in the lanes of its direction");
     assert!(semi(20.0, 8.0, 8.0, Policy::Carriageway));
     // On a steady circle with its outer front corner at 22.5 m the vehicle sweeps 4.7 m. 5 m are just enough, as the
     // adversary finds below.
     assert!(!semi(20.0, 4.5, 7.0, Policy::Carriageway), "a small and narrow ring");
-    let small = Drawn::ring(20.0, 4.5, 7.0, 12.0);
+    let small = ring(20.0, 4.5, 7.0, 12.0);
     assert!(small.safe("WE", Policy::Carriageway, "AGV-TUG4"), "but a tug does");
-    let rsc = |ring_m| {
-        Drawn::ring(20.0, ring_m, 8.0, 12.0).best("WE", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
-    };
+    let rsc =
+        |ring_m| ring(20.0, ring_m, 8.0, 12.0).best("WE", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap();
     let (narrow, wide) = (rsc(5.5), rsc(8.0));
     assert!(wide > narrow + 0.3, "{narrow} {wide}");
 }
@@ -89,7 +84,7 @@ fn driving_on_the_left_mirrors_every_passage() {
 #[test]
 fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
     let tags = "highway=secondary width=8";
-    let whole = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let whole = ring(20.0, 8.0, 8.0, 12.0);
     let mut map = map(20.0, tags, tags, false);
     map = map.without_way(1);
     for (id, nodes) in [(11, "defghijklmno"), (12, "opqrstuvwxabcd")] {
@@ -125,8 +120,8 @@ fn one_way_arms_only_enter_or_leave() {
 
 #[test]
 fn long_arcs_leave_it_at_turns_and_tiny_rings_at_unknown() {
-    assert!(Drawn::ring(90.0, 8.0, 8.0, 12.0).passages().is_empty());
-    let tiny = Drawn::ring(5.0, 4.0, 6.0, 4.0);
+    assert!(ring(90.0, 8.0, 8.0, 12.0).passages().is_empty());
+    let tiny = ring(5.0, 4.0, 6.0, 4.0);
     assert_eq!(tiny.passages().len(), 12);
     let made = tiny.corridors("WE", Policy::Carriageway, Reach::Short);
     assert_eq!(made.map(|made| made.seeds().len()), Err(UnknownReason::Geometry));
@@ -135,7 +130,7 @@ fn long_arcs_leave_it_at_turns_and_tiny_rings_at_unknown() {
 #[test]
 fn a_corridor_never_leaves_the_drivable_area() {
     for (radius_m, policy) in [(16.0, Policy::Carriageway), (20.0, Policy::Direction), (25.0, Policy::Lane)] {
-        let drawn = Drawn::ring(radius_m, 9.0, 9.0, 12.0);
+        let drawn = ring(radius_m, 9.0, 9.0, 12.0);
         let mut looked_at = 0;
         for passage in drawn.passages() {
             let made = corridors_of(&drawn.network, &passage, policy, &drawn.params, Reach::Short).unwrap();
@@ -159,7 +154,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
 
 #[test]
 fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_between() {
-    let drawn = Drawn::ring(20.0, 9.0, 8.0, 12.0);
+    let drawn = ring(20.0, 9.0, 8.0, 12.0);
     for ends in ["WS", "WE", "WN", "SW", "EN"] {
         let passage = drawn.passage(ends);
         let made = drawn.corridors(ends, Policy::Carriageway, Reach::Long).unwrap();
@@ -200,7 +195,7 @@ fn certified(drawn: &Drawn, id: &str, edges: &[Verdict], threads: usize) -> Vec<
 
 #[test]
 fn a_passage_has_one_certificate_whatever_the_threads() {
-    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let drawn = ring(20.0, 8.0, 8.0, 12.0);
     let safe = vec![Verdict::Safe; drawn.network.edges.len()];
     let one = certified(&drawn, "EU-SEMI16.5", &safe, 1);
     assert_eq!(one, certified(&drawn, "EU-SEMI16.5", &safe, 3));
@@ -214,7 +209,7 @@ fn a_passage_has_one_certificate_whatever_the_threads() {
 
 #[test]
 fn arcs_need_leave_but_no_certificate_of_their_own() {
-    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let drawn = ring(20.0, 8.0, 8.0, 12.0);
     let turns = drawn.facts();
     let (over, past) = (drawn.passage("WE"), drawn.passage("EN"));
     let of = |verdict: Verdict| {
@@ -295,7 +290,7 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
 fn no_claim_of_a_passage_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x9u64));
     for (radius_m, ring_m, arm_m) in [(20.0, 8.0, 8.0), (16.0, 9.0, 9.0), (40.0, 8.0, 7.0), (20.0, 5.0, 7.0)] {
-        let drawn = Drawn::ring(radius_m, ring_m, arm_m, 12.0);
+        let drawn = ring(radius_m, ring_m, arm_m, 12.0);
         for (ends, id) in
             [("WS", "EU-SEMI16.5"), ("WE", "EU-SEMI16.5"), ("NW", "US-WB40"), ("WE", "AU-BDOUBLE26"), ("EN", "US-WB67")]
         {
@@ -311,7 +306,7 @@ fn no_claim_of_a_passage_is_refuted() {
 #[test]
 fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
     let (radius_m, ring_m, arm_m, kerb_m) = (20.0, 8.0, 8.0, 8.0);
-    let drawn = Drawn::ring(radius_m, ring_m, arm_m, kerb_m);
+    let drawn = ring(radius_m, ring_m, arm_m, kerb_m);
     let made = drawn.corridors("WE", Policy::Carriageway, Reach::Short).unwrap();
     assert!(made.kerb_radius_m.is_some());
     let nodes: Vec<_> = RING.chars().map(id_of).collect();

@@ -3,10 +3,9 @@
 
 #![allow(clippy::single_range_in_vec_init)]
 
-use crate::oracle;
-use crate::support::ascii_map;
-use crate::support::roundabout;
-use crate::support::routing;
+use netcert_testing::ascii_map;
+use netcert_testing::roundabout;
+use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
 use netcert::network::{Movement, PassageKind};
@@ -16,7 +15,7 @@ use netcert::stet::certify_planned;
 use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
-use oracle::whole;
+use netcert_testing::oracle::whole;
 use routing::{Driver, Region};
 
 fn region(map: &AsciiMap, kerb_m: f64) -> Region {

@@ -1,11 +1,10 @@
 //! Routes: the search compared with independent searches, whole-route certificates compared with the disturbed
 //! simulator, and the answer if there is no way.
 
-use crate::oracle;
-use crate::support::ascii_map;
-use crate::support::demo::demo;
-use crate::support::extracts::extract;
-use crate::support::routing;
+use netcert_testing::ascii_map;
+use netcert_testing::demo::demo;
+use netcert_testing::extracts::extract;
+use netcert_testing::routing;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -16,8 +15,8 @@ use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
-use oracle::draw::Draw;
-use oracle::whole;
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::whole;
 use proptest::prelude::*;
 use routing::Region;
 

@@ -1,8 +1,8 @@
 //! Places where cross sections meet. Lanes keep their width where carriageways join and part and where lanes are added,
 //! on both driving sides, in both directions, under every policy. No corridor leaves the mapped road.
 
-use crate::support::ascii_map::{AsciiMap, edge, strokes};
-use crate::support::junctions::Drawn;
+use netcert_testing::ascii_map::{AsciiMap, edge, strokes};
+use netcert_testing::junctions::Drawn;
 
 use netcert::corridor::{Params, StrokeCorridor, TaperCause, stroke_corridor};
 use netcert::explain::{explain_edge, words};
@@ -13,7 +13,7 @@ use netcert::stet::Model;
 use netcert::stop::Stop;
 use proptest::prelude::*;
 
-use crate::support::catalogue::catalogued;
+use netcert_testing::catalogue::catalogued;
 
 const POLICIES: [Policy; 3] = [Policy::Lane, Policy::Direction, Policy::Carriageway];
 /// Tolerance, metres. The nodes' places are rounded to a centimetre, and the curve may leave the line by half a metre.

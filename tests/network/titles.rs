@@ -1,6 +1,6 @@
 //! What roads without name and ref are called: by what they join.
 
-use crate::support::ascii_map::{AsciiMap, built, edge};
+use netcert_testing::ascii_map::{AsciiMap, built, edge};
 
 /// A motorway M–N with a ramp of two ways from `a` over `b` to the road R–S, a link from it to a street, and a driveway.
 fn interchange() -> AsciiMap {

@@ -3,10 +3,9 @@
 //!
 //! Roads cross at right angles unless drawn otherwise. Widths are tagged, and kerb radii are the test's own.
 
-use crate::oracle;
-use crate::support::ascii_map;
-use crate::support::catalogue::catalogued;
-use crate::support::junctions::{Certified, Drawn};
+use netcert_testing::ascii_map;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::junctions::{Certified, Drawn};
 
 use ascii_map::{AsciiMap, id_of};
 use geo::{Contains as _, Distance as _, Euclidean};
@@ -19,8 +18,8 @@ use netcert::stet::Model;
 use netcert::stop::Stop;
 use netcert::turns::{Reach, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
-use oracle::draw::Draw;
-use oracle::fight;
+use netcert_testing::oracle::draw::Draw;
+use netcert_testing::oracle::fight;
 
 const CROSS: &str = "
             D
@@ -30,16 +29,14 @@ const CROSS: &str = "
             E
         ";
 
-impl Drawn {
-    fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Self {
-        let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
-        Self::new(&map, left_hand_traffic, kerb_m)
-    }
+fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Drawn {
+    let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
+    Drawn::new(&map, left_hand_traffic, kerb_m)
 }
 
 #[test]
 fn a_tug_takes_the_corner_that_a_b_double_does_not() {
-    let drawn = Drawn::cross("highway=residential width=6", false, 3.0);
+    let drawn = cross("highway=residential width=6", false, 3.0);
     for nodes in ["EBC", "EBA"] {
         assert!(drawn.safe(nodes, Policy::Lane, "AGV-TUG4"), "{nodes}");
         for id in ["EU-SEMI16.5", "AU-BDOUBLE26", "AU-ATRIPLE53"] {
@@ -52,7 +49,7 @@ fn a_tug_takes_the_corner_that_a_b_double_does_not() {
 #[test]
 fn a_wide_kerb_lets_a_semitrailer_round() {
     let rsc = |kerb_m| {
-        let drawn = Drawn::cross("highway=secondary width=7.5", false, kerb_m);
+        let drawn = cross("highway=secondary width=7.5", false, kerb_m);
         drawn.best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap()
     };
     let (sharp, round) = (rsc(0.0), rsc(15.0));
@@ -63,7 +60,7 @@ fn a_wide_kerb_lets_a_semitrailer_round() {
 #[test]
 fn driving_on_the_left_mirrors_every_turn() {
     let tags = "highway=secondary width=8";
-    let (right, left) = (Drawn::cross(tags, false, 8.0), Drawn::cross(tags, true, 8.0));
+    let (right, left) = (cross(tags, false, 8.0), cross(tags, true, 8.0));
     for (id, policy) in [("AGV-TUG4", Policy::Lane), ("EU-SEMI16.5", Policy::Carriageway)] {
         for (nodes, mirrored) in [("EBC", "EBA"), ("EBA", "EBC"), ("ABE", "CBE")] {
             let (a, b) = (right.best(nodes, policy, id).unwrap(), left.best(mirrored, policy, id).unwrap());
@@ -77,7 +74,7 @@ fn driving_on_the_left_mirrors_every_turn() {
 
 #[test]
 fn back_and_straight_on_are_no_turns() {
-    let drawn = Drawn::cross("highway=residential", false, 3.0);
+    let drawn = cross("highway=residential", false, 3.0);
     let facts = drawn.facts();
     // From each of the four arms, one turn to the left and one to the right.
     assert_eq!(facts.len(), 8);
@@ -130,7 +127,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
 
 #[test]
 fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
-    let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
+    let drawn = cross("highway=secondary width=9", false, 8.0);
     for nodes in ["EBC", "EBA", "ABD"] {
         let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long).unwrap();
         assert!(made.on_road().len() > 20, "{}", made.on_road().len());
@@ -157,7 +154,7 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
 
 #[test]
 fn a_path_has_an_area_that_holds_it_and_the_road_behind_it() {
-    let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
+    let drawn = cross("highway=secondary width=9", false, 8.0);
     for (nodes, reach) in [("EBC", Reach::Short), ("EBA", Reach::Long), ("ABD", Reach::Short)] {
         let made = drawn.corridors(nodes, Policy::Carriageway, reach).unwrap();
         for path in made.on_road() {
@@ -293,7 +290,7 @@ fn a_restriction_forbids_whatever_fits() {
 
 #[test]
 fn results_depend_neither_on_threads_nor_on_other_vehicles() {
-    let drawn = Drawn::cross("highway=secondary width=7.5", false, 10.0);
+    let drawn = cross("highway=secondary width=7.5", false, 10.0);
     let ids = ["AGV-TUG4", "EU-SEMI16.5", "AU-BDOUBLE26"];
     let (one, rows) = certified(&drawn, &ids, Policy::Carriageway, 1);
     assert_eq!(one.len(), 8 * ids.len());
@@ -312,7 +309,7 @@ fn results_depend_neither_on_threads_nor_on_other_vehicles() {
 fn no_claim_of_a_turn_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x7u64));
     for (width, kerb_m) in [("7", 6.0), ("8", 12.0), ("9", 15.0)] {
-        let drawn = Drawn::cross(&format!("highway=secondary width={width}"), false, kerb_m);
+        let drawn = cross(&format!("highway=secondary width={width}"), false, kerb_m);
         for (nodes, id) in [
             ("EBC", "EU-SEMI16.5"),
             ("EBA", "EU-SEMI16.5"),
@@ -330,7 +327,7 @@ fn no_claim_of_a_turn_is_refuted() {
 
 /// Two streets of three lanes each way.
 fn wide_streets(strip: Policy) -> Drawn {
-    let mut drawn = Drawn::cross("highway=primary lanes=6 width=21", false, 9.0);
+    let mut drawn = cross("highway=primary lanes=6 width=21", false, 9.0);
     drawn.params.strip = strip;
     drawn
 }
@@ -383,7 +380,7 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
 
 #[test]
 fn a_surveyed_corner_gets_the_hint_of_an_assumed_one() {
-    let drawn = Drawn::cross("highway=secondary width=6.5", false, 3.0);
+    let drawn = cross("highway=secondary width=6.5", false, 3.0);
     let settings = Settings { policy: Policy::Carriageway, kerbs: drawn.params.kerbs.clone(), ..Settings::default() };
     let model = Model::new(&catalogued("EU-SEMI16.5")).unwrap();
     let turn = drawn.turn("EBC");
@@ -398,7 +395,7 @@ fn a_surveyed_corner_gets_the_hint_of_an_assumed_one() {
 
 #[test]
 fn an_unsafe_turn_says_which_kerb_would_do() {
-    let cross = |kerb_m| Drawn::cross("highway=secondary width=6.5", false, kerb_m);
+    let cross = |kerb_m| cross("highway=secondary width=6.5", false, kerb_m);
     let explained = |id: &str| {
         let drawn = cross(3.0);
         let kerbs = drawn.params.kerbs.clone();

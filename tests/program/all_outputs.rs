@@ -13,7 +13,7 @@ use parquet::record::Field;
 use serde_json::{Value, json};
 
 use super::serve::http::Server;
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const TRAIN: &str = "AU-ATRIPLE53";
 const SEMI: &str = "AU-SEMI19";

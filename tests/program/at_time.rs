@@ -3,7 +3,7 @@
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
-use crate::support::program::{Answer, Place};
+use netcert_testing::program::{Answer, Place};
 
 const CLOSED: &str = "no @ (22:00-06:00)";
 

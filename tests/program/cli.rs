@@ -1,8 +1,8 @@
 //! Tests of the built program as a user sees it: its answers, the files that it leaves, and its errors.
 
-use crate::support::demo::demo;
-use crate::support::extracts;
-use crate::support::program;
+use netcert_testing::demo::demo;
+use netcert_testing::extracts;
+use netcert_testing::program;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read as _;

@@ -6,7 +6,7 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Connection as _, Row as _};
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const PAGE: &str = include_str!("../../docs/columns.md");
 const VEHICLE: &str = "AU-SEMI19";

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::support::{program, sheet};
+use netcert_testing::{program, sheet};
 
 use program::Place;
 

@@ -3,9 +3,9 @@
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
-use crate::support::program::Place;
-use crate::support::sheet;
 use crate::update::place_of;
+use netcert_testing::program::Place;
+use netcert_testing::sheet;
 
 const VEHICLE: &str = "EU-SEMI16.5";
 const ROUTES: i64 = 36;

@@ -4,7 +4,7 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const WIDE: [(&str, &str); 3] = [("highway", "primary"), ("width", "12"), ("name", "Wide, \"new\" Road")];
 const NARROW: [(&str, &str); 3] = [("highway", "primary"), ("width", "2.6"), ("ref", "N 1")];

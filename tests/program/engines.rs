@@ -5,9 +5,9 @@
 //!
 //! A test whose engine cannot be installed says so and skips.
 
-use crate::support::demo::demo;
-use crate::support::program;
-use crate::support::skip::skipped;
+use netcert_testing::demo::demo;
+use netcert_testing::program;
+use netcert_testing::skip::skipped;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -13,7 +13,7 @@ use netcert::verdict::{UnknownReason, Verdict};
 use serde_json::Value;
 use sqlx::{AssertSqlSafe, Column as _, Connection as _, Row as _, SqliteConnection};
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// What depends on measurements.
@@ -422,7 +422,7 @@ fn certificates_of_a_register_that_changed_meanwhile_are_not_stored() {
         finished: "2026-11-23T08:00:01.000Z".into(),
         parameters: "{}".into(),
     };
-    let vehicle = netcert::pipeline::record(&crate::support::catalogue::catalogued(VEHICLE)).unwrap();
+    let vehicle = netcert::pipeline::record(&netcert_testing::catalogue::catalogued(VEHICLE)).unwrap();
     let settings = Settings { policy: Policy::Lane, ..database.settings_of_new_sets().unwrap() };
     let mut replace = || {
         let certificates =

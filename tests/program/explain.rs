@@ -1,9 +1,9 @@
 //! Tests of `explain`: it agrees with the database, its places agree with geometry, and its hints hold. A hinted value passes when
 //! it is certified, and one step less fails.
 
-use crate::support::catalogue::catalogued;
-use crate::support::program;
-use crate::support::xml;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::program;
+use netcert_testing::xml;
 
 use std::collections::BTreeMap;
 

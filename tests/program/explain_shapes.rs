@@ -9,8 +9,8 @@ use geojson::{Feature, FeatureCollection, GeoJson, GeometryValue};
 use netcert::corridor::Frame;
 use serde_json::Value;
 
-use crate::support::program::{Answer, Place};
-use crate::support::skip::skipped;
+use netcert_testing::program::{Answer, Place};
+use netcert_testing::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
 

@@ -1,9 +1,9 @@
 //! Tests of what all exports have in common: the permits of `netcert route`, a header that says what the permits depend on, and
 //! outputs that are complete or absent.
 
-use crate::support::demo::demo;
-use crate::support::program;
 use netcert::reporter::Silent;
+use netcert_testing::demo::demo;
+use netcert_testing::program;
 
 use netcert::export::{Ask, PermitPolicy, Source};
 use netcert::network::MovementKind;

@@ -1,8 +1,8 @@
 //! Reads exports for engines with netcert's own reader. Nothing may be lost, and nothing refused may be open.
 
-use crate::support::demo::demo;
-use crate::support::program;
-use crate::support::skip::skipped;
+use netcert_testing::demo::demo;
+use netcert_testing::program;
+use netcert_testing::skip::skipped;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -8,7 +8,7 @@ use protobuf::Message as _;
 use serde_json::{Value, json};
 use std::io::Read as _;
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 

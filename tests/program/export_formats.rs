@@ -1,9 +1,9 @@
 //! Reads exports to map formats with other programs and compares them with the CSV files.
 
 use crate::engines;
-use crate::support::program;
-use crate::support::python;
-use crate::support::skip::skipped;
+use netcert_testing::program;
+use netcert_testing::python;
+use netcert_testing::skip::skipped;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;

@@ -17,8 +17,8 @@ use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 use netcert::words::{VerdictKind, verdict_words};
 
-use crate::support::skip::skipped;
-use crate::support::store_network;
+use netcert_testing::skip::skipped;
+use netcert_testing::store_network;
 use store_network::{certificate, network};
 
 fn run() -> Run {

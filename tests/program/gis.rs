@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::support::program::{Answer, Place};
-use crate::support::python::python;
-use crate::support::skip::skipped;
+use netcert_testing::program::{Answer, Place};
+use netcert_testing::python::python;
+use netcert_testing::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
 

@@ -21,8 +21,6 @@ mod geopackage;
 mod gis;
 mod manoeuvres;
 mod named_tags;
-#[path = "../oracle/mod.rs"]
-mod oracle;
 mod overture;
 mod pages;
 mod paper;
@@ -34,7 +32,6 @@ mod serve;
 mod settings;
 mod sign;
 mod snapshots;
-mod support;
 mod survey;
 mod tasks;
 mod turns_program;

@@ -1,16 +1,15 @@
 //! Compares low-speed turns with closed forms, an independent simulator, and tables from a third simulator.
 
-use crate::oracle;
-use crate::support::catalogue::catalogued;
-use crate::support::program;
-use crate::support::xml;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::program;
+use netcert_testing::xml;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use netcert::manoeuvres::{self, Finding, Guide, Measure, Sureness, Swept, Turn, beyond_limit};
 use netcert::picture;
 use netcert::vehicle::{Catalogue, Vehicle};
-use oracle::turns;
+use netcert_testing::oracle::turns;
 use program::Place;
 
 /// A rigid lorry: L, front overhang, rear overhang, width.

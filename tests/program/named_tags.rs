@@ -3,8 +3,8 @@
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::words::verdict_words;
 
-use crate::support::program::Place;
 use crate::update::place_of;
+use netcert_testing::program::Place;
 
 type Pairs = &'static [(&'static str, &'static str)];
 

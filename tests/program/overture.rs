@@ -13,9 +13,9 @@ use netcert::verdict::{ForbiddenReason, Verdict};
 use serde_json::{Value, json};
 
 use crate::export_formats::judged_by_models;
-use crate::support::extracts;
-use crate::support::program::{Answer, Place};
-use crate::support::python;
+use netcert_testing::extracts;
+use netcert_testing::program::{Answer, Place};
+use netcert_testing::python;
 
 /// Vehicles and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 AU-ATRIPLE53 --corridor carriageway";

@@ -6,9 +6,9 @@
 //! those of [`settings`] are replaced.
 
 use crate::engines;
-use crate::support::program;
-use crate::support::python;
-use crate::support::skip::skipped;
+use netcert_testing::program;
+use netcert_testing::python;
+use netcert_testing::skip::skipped;
 
 use std::collections::BTreeMap;
 use std::net::TcpListener;

@@ -1,6 +1,6 @@
 //! `netcert paper` as a user meets it.
 
-use crate::support::program;
+use netcert_testing::program;
 
 use program::Place;
 use serde_json::Value;

@@ -4,8 +4,8 @@ use std::io::Read as _;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::demo::demo;
-use crate::support::program::Place;
+use netcert_testing::demo::demo;
+use netcert_testing::program::Place;
 
 #[test]
 fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const SEMI: &str = "AU-SEMI19";
 const TRAIN: &str = "AU-ATRIPLE53";

@@ -3,8 +3,8 @@
 use std::process::Stdio;
 use std::time::Duration;
 
-use crate::support::program::{Answer, Place};
-use crate::support::skip::skipped;
+use netcert_testing::program::{Answer, Place};
+use netcert_testing::skip::skipped;
 
 const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
 const KILLS: u32 = 100;

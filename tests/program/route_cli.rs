@@ -1,7 +1,7 @@
 //! Tests of `netcert route` and `netcert reach` on the drawn region, with a certificate file that `verify` accepts, and with no
 //! way between the places.
 
-use crate::support::program;
+use netcert_testing::program;
 
 use program::Place;
 

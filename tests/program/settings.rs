@@ -15,8 +15,8 @@ use netcert::words::Named;
 use serde_json::Value;
 
 use crate::serve::http::Server;
-use crate::support::catalogue::catalogued;
-use crate::support::program::Place;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// What the database is ingested with.

@@ -8,8 +8,8 @@ use netcert::seal::sealed;
 use netcert::sign::{PublicKey, Refusal, check_document};
 use serde_json::{Value, json};
 
-use crate::support::program;
-use crate::support::skip::skipped;
+use netcert_testing::program;
+use netcert_testing::skip::skipped;
 
 use program::Place;
 
@@ -78,7 +78,7 @@ fn what_is_signed_names_extract_settings_vehicle_and_program() {
     let place = signed_route();
     let document = document(&place, "route.json");
     let origin = &document["origin"];
-    let extract = blake3::hash(&std::fs::read(crate::support::demo::demo()).unwrap()).to_hex().to_string();
+    let extract = blake3::hash(&std::fs::read(netcert_testing::demo::demo()).unwrap()).to_hex().to_string();
     assert_eq!(origin["input_blake3"], json!(extract));
     assert_eq!(origin["settings"]["corridor"], "carriageway");
     assert!(origin["program"].as_str().unwrap().starts_with(concat!(env!("CARGO_PKG_VERSION"), "+")));
@@ -366,7 +366,7 @@ fn the_commands_of_the_page_work() {
     }
     let place = Place::empty();
     std::fs::create_dir(place.path("data")).unwrap();
-    std::fs::copy(crate::support::demo::demo(), place.path("data/demo.osm.pbf")).unwrap();
+    std::fs::copy(netcert_testing::demo::demo(), place.path("data/demo.osm.pbf")).unwrap();
     let netcert = Path::new(env!("CARGO_BIN_EXE_netcert")).parent().unwrap().to_owned();
     let others = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(netcert).chain(std::env::split_paths(&others)));

@@ -1,7 +1,7 @@
 //! What people read, whole: help, `query`, `explain`, `route` and `stats` of the shipped region. A change of a word is seen in a review
 //! of the files in `snapshots/`. `cargo insta review`, or `INSTA_UPDATE=always` in the environment of the test, writes them anew.
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 /// The answers of a group: each with its command, and what goes to standard error behind a line.
 fn written(name: &str, lines: &[&str]) {

@@ -6,7 +6,7 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
-use crate::support::{program, sheet};
+use netcert_testing::{program, sheet};
 
 use program::Place;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::support::program;
+use netcert_testing::program;
 
 use program::Place;
 

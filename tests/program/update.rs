@@ -7,9 +7,9 @@ use std::process::Command;
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
-use crate::support::extracts;
-use crate::support::program::{Answer, Place};
-use crate::support::skip::skipped;
+use netcert_testing::extracts;
+use netcert_testing::program::{Answer, Place};
+use netcert_testing::skip::skipped;
 
 /// Vehicle and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";

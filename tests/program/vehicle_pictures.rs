@@ -1,8 +1,8 @@
 //! Vehicles as pictures, and vehicles that cannot be built.
 
-use crate::support::catalogue::catalogued;
-use crate::support::program;
-use crate::support::xml;
+use netcert_testing::catalogue::catalogued;
+use netcert_testing::program;
+use netcert_testing::xml;
 
 use netcert::picture;
 use netcert::vehicle::{Catalogue, VehicleError};

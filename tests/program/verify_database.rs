@@ -1,7 +1,7 @@
 //! A database is confirmed as it was made, and every column of its certificates, changed in the unsafe direction with plain SQL, is
 //! refuted.
 
-use crate::support::program;
+use netcert_testing::program;
 
 use program::Place;
 

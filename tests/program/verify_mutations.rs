@@ -1,7 +1,7 @@
 //! Tests that `verify` refutes a certificate file with any member changed in the unsafe direction and a new hash, and a file with any
 //! byte changed and the old hash. Prints the score.
 
-use crate::support::program;
+use netcert_testing::program;
 
 use netcert::check::{Outcome, Report, certificate};
 use netcert::seal::sealed;

@@ -1,6 +1,6 @@
 //! A route's certificate file, turns and all, is confirmed by the checker in every column: it shares no code with what made it.
 
-use crate::support::program;
+use netcert_testing::program;
 
 use program::Place;
 

@@ -1,7 +1,7 @@
 //! The turns of a database are confirmed as they were made, and every column of theirs, changed in the unsafe direction with plain SQL,
 //! is refuted.
 
-use crate::support::{extracts, program};
+use netcert_testing::{extracts, program};
 
 use program::Place;
 

@@ -2,8 +2,8 @@
 
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
-use crate::support::program::Place;
 use crate::update::{place_of, sql};
+use netcert_testing::program::Place;
 
 #[test]
 fn a_lane_that_both_directions_share_is_told() {

@@ -8,9 +8,9 @@ use netcert::osm::facts::{Countries, Policy};
 use netcert::pipeline::{Summary, read_network};
 use netcert::vehicle::Vehicle;
 
-use crate::oracle::draw::{self, Bends, Draw};
-use crate::oracle::fleet;
 use netcert::reporter::Silent;
+use netcert_testing::oracle::draw::{self, Bends, Draw};
+use netcert_testing::oracle::fleet;
 
 /// Stations of a real road in one case.
 const WINDOW: usize = 320;

@@ -10,8 +10,8 @@ use netcert::stet::KNOT_STATIONS;
 use netcert::stet::motion::{Pose, sweep_path};
 use netcert::vehicle::Vehicle;
 
-use crate::oracle::path::{V2, along, direction, dot, left_of};
-use crate::oracle::road::Road;
+use netcert_testing::oracle::path::{V2, along, direction, dot, left_of};
+use netcert_testing::oracle::road::Road;
 
 const POINT_SPACING_M: f64 = 1.5;
 

@@ -8,7 +8,7 @@ use netcert::stet::{self, Model, Options};
 use netcert::stop::Stop;
 
 use super::scene::{drawn, route, run, scenario};
-use crate::oracle::path::V2;
+use netcert_testing::oracle::path::V2;
 
 const TANGENT: Reading = Reading { beta: Beta::Tangent, ..Reading::SIMULATED };
 

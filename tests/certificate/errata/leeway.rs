@@ -4,7 +4,7 @@ use netcert::corridor::Corridor;
 use netcert::published::{As, Offset, Reading, Shape, Stet, System, boundary_leeway};
 
 use super::scene::{NOTHING, arc, is_on_the_road, route, run};
-use crate::oracle::path::along;
+use netcert_testing::oracle::path::along;
 
 const POINT_M: f64 = 1e-6;
 

@@ -4,7 +4,7 @@ use netcert::published::{As, Reading, Stet, Sway, System, follower_shape};
 use netcert::stet::steady_offtracking;
 
 use super::scene::{NOTHING, arc, route, run};
-use crate::oracle::path::{V2, along, dot, left_of};
+use netcert_testing::oracle::path::{V2, along, dot, left_of};
 
 const SYSTEM: System = System { trailers: 3, link_m: 5.0, sway_rad: 0.2, length_m: 9.0, width_m: 2.5 };
 

@@ -9,7 +9,7 @@ use netcert::stet::{self, Model, Options};
 use netcert::stop::Stop;
 
 use super::scene::{NOTHING, is_on_the_road, route, run, shifted};
-use crate::oracle::draw::{self, Draw};
+use netcert_testing::oracle::draw::{self, Draw};
 
 const CASES: u64 = 250;
 

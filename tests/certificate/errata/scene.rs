@@ -6,7 +6,7 @@ use netcert::published::{
 };
 use netcert::speed_profile::SpeedProfile;
 
-use crate::oracle::path::{V2, along};
+use netcert_testing::oracle::path::{V2, along};
 
 pub(crate) const NOTHING: Permissible = Permissible { max_shift_m: 0.0, min_shrink: 1.0 };
 

@@ -6,7 +6,7 @@ use netcert::published::{
 };
 
 use super::scene::{drawn, route, run, scenario};
-use crate::oracle::path::{V2, along, dot, left_of};
+use netcert_testing::oracle::path::{V2, along, dot, left_of};
 
 const EAST: V2 = [1.0, 0.0];
 const TILTED: V2 = [0.8, 0.6];

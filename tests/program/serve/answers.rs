@@ -9,8 +9,8 @@ use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;
-use crate::support::program::Place;
-use crate::support::xml;
+use netcert_testing::program::Place;
+use netcert_testing::xml;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// A vehicle that is certified, too.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::http::Server;
 use crate::diff::{VEHICLE, place};
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const LINE: &str = "serve --db new.gpkg --before old.gpkg --addr 127.0.0.1:0";
 

@@ -6,7 +6,7 @@ use netcert::verdict::{UnsafeReason, Verdict};
 use serde_json::{Value, json};
 
 use super::http::Server;
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-ATRIPLE53";
 const SHORT: &str = "AU-SEMI19";

@@ -19,7 +19,7 @@ use netcert::turns::turn_facts;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnknownReason, Verdict};
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 

@@ -4,7 +4,7 @@ use netcert::words::verdict_words;
 use serde_json::{Map, Value};
 
 use super::http::Server;
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 const LONG: &str = "AU-ATRIPLE53";

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 /// Long enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);

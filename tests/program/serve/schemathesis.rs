@@ -9,7 +9,7 @@ use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;
-use crate::support::python::python;
+use netcert_testing::python::python;
 
 const VEHICLE: &str = "AU-SEMI19";
 const PACKAGES: &[&str] = &["schemathesis==4.32.5"];

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::http::Server;
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use netcert::serve::{LaneLimits, Limits, Options, Server};
 
 use super::http::Reply;
-use crate::support::program::Place;
+use netcert_testing::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 const PATIENCE: Duration = Duration::from_secs(120);

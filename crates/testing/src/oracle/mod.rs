@@ -1,6 +1,5 @@
 //! The link between the certifier and the oracle (`crates/oracle`): claims come from the certifier, attacks from the
 //! oracle.
-#![allow(dead_code, unreachable_pub)]
 
 pub mod claim;
 pub mod fight;

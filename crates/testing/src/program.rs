@@ -1,7 +1,7 @@
 //! Runs the built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -13,24 +13,32 @@ use netcert::store::{Database, QueryOptions};
 use sqlx::{Connection as _, SqliteConnection};
 use tempfile::TempDir;
 
-use super::demo::demo;
+use crate::demo::demo;
 
 /// A temporary working folder.
-pub(crate) struct Place(TempDir);
+pub struct Place(TempDir);
 
 /// The result of a run.
-pub(crate) struct Answer {
+pub struct Answer {
     line: String,
     output: Output,
 }
 
+/// The program that was built for these tests: it lies beside the folder of the test's own program.
+fn built() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let path = test.parent().and_then(Path::parent).unwrap().join(format!("netcert{}", std::env::consts::EXE_SUFFIX));
+    assert!(path.exists(), "{} is missing: the tests of the program build it", path.display());
+    path
+}
+
 impl Place {
-    pub(crate) fn empty() -> Self {
+    pub fn empty() -> Self {
         Self(TempDir::new().unwrap())
     }
 
     /// With `demo.gpkg`, in which AU-SEMI19 and AU-ATRIPLE53 are certified. The database is made once.
-    pub(crate) fn with_demo() -> Self {
+    pub fn with_demo() -> Self {
         static MADE: OnceLock<Vec<u8>> = OnceLock::new();
         let made = MADE.get_or_init(|| {
             let place = Self::empty();
@@ -42,7 +50,7 @@ impl Place {
 
     /// With `demo.gpkg`, in which these vehicles are certified on the whole carriageway, so that some can turn corners.
     /// The database is made once per set of vehicles.
-    pub(crate) fn with_wide_demo(vehicles: &str) -> Self {
+    pub fn with_wide_demo(vehicles: &str) -> Self {
         static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
         let of_these = Arc::clone(MADE.lock().unwrap().entry(vehicles.to_owned()).or_default());
         let made = of_these.get_or_init(|| {
@@ -56,7 +64,7 @@ impl Place {
 
     /// With `demo.gpkg` of the drawn `unknown.osm.pbf`, in which AU-SEMI19 is certified on the whole carriageway: a wide road, and a side
     /// road whose parked cars leave no width, so that its edges and the turns onto and off it are unknown.
-    pub(crate) fn with_unknown_road() -> Self {
+    pub fn with_unknown_road() -> Self {
         let at = |id, lon_e7, lat_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7 }, tags: Vec::new() };
         let nodes = [at(1, 0, 0), at(2, 30_000, 0), at(3, 60_000, 0), at(4, 30_000, 30_000)];
         let way = |id, refs: &[i64], tags: &[(&str, &str)]| {
@@ -71,31 +79,31 @@ impl Place {
         place
     }
 
-    pub(crate) fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {
+    pub fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {
         std::fs::write(self.path(name), bytes).unwrap();
         self
     }
 
-    pub(crate) fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+    pub fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
     }
 
     /// `demo.gpkg`
-    pub(crate) fn database(&self) -> Database {
+    pub fn database(&self) -> Database {
         Database::open(&self.path("demo.gpkg")).unwrap()
     }
 
     /// All rows of a vehicle in `demo.gpkg` under the lane policy, by edge.
-    pub(crate) fn rows(&self, vehicle: &str) -> Vec<EdgeRow> {
+    pub fn rows(&self, vehicle: &str) -> Vec<EdgeRow> {
         self.database().query(&QueryOptions::new(vehicle, Policy::Lane)).unwrap().map(Result::unwrap).collect()
     }
 
     /// Changes `demo.gpkg` without netcert. Returns the number of changed rows.
-    pub(crate) fn sql(&self, statement: &str) -> u64 {
+    pub fn sql(&self, statement: &str) -> u64 {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
             let mut c = SqliteConnection::connect(self.path("demo.gpkg").to_str().unwrap()).await.unwrap();
@@ -106,7 +114,7 @@ impl Place {
     }
 
     /// Names of the files in the folder, sorted.
-    pub(crate) fn files(&self) -> Vec<String> {
+    pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
@@ -114,20 +122,20 @@ impl Place {
     }
 
     /// Arguments are separated by blanks. `{demo}` stands for the shipped region.
-    pub(crate) fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_netcert"));
+    pub fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(built());
         command.current_dir(self.0.path()).env_remove("SOURCE_DATE_EPOCH").stdin(Stdio::null());
         command.args(line.split_whitespace().map(|word| if word == "{demo}" { demo() } else { word.into() }));
         command
     }
 
-    pub(crate) fn netcert(&self, line: &str) -> Answer {
+    pub fn netcert(&self, line: &str) -> Answer {
         Answer { line: line.to_owned(), output: self.command(line).output().unwrap() }
     }
 }
 
 impl Answer {
-    pub(crate) fn of(line: &str, command: &mut Command) -> Self {
+    pub fn of(line: &str, command: &mut Command) -> Self {
         Self { line: line.to_owned(), output: command.output().unwrap() }
     }
 
@@ -136,47 +144,47 @@ impl Answer {
         self
     }
 
-    pub(crate) fn succeeds(self) -> Self {
+    pub fn succeeds(self) -> Self {
         self.status(0)
     }
 
     /// Expects exit status 1 and one error.
-    pub(crate) fn fails(self) -> Self {
+    pub fn fails(self) -> Self {
         assert_eq!(self.err().matches("error: ").count(), 1, "{}: {}", self.line, self.err());
         self.status(1)
     }
 
     /// Expects exit status 2.
-    pub(crate) fn ends_as_misuse(self) -> Self {
+    pub fn ends_as_misuse(self) -> Self {
         self.status(2)
     }
 
     /// Expects `text` on standard output.
-    pub(crate) fn shows(self, text: &str) -> Self {
+    pub fn shows(self, text: &str) -> Self {
         assert!(self.out().contains(text), "{}: no {text:?} in\n{}", self.line, self.out());
         self
     }
 
     /// Expects `text` on standard error.
-    pub(crate) fn tells(self, text: &str) -> Self {
+    pub fn tells(self, text: &str) -> Self {
         assert!(self.err().contains(text), "{}: no {text:?} in\n{}", self.line, self.err());
         self
     }
 
-    pub(crate) fn tells_nothing(self) -> Self {
+    pub fn tells_nothing(self) -> Self {
         assert_eq!(self.err(), "", "{}", self.line);
         self
     }
 
-    pub(crate) fn out(&self) -> String {
+    pub fn out(&self) -> String {
         String::from_utf8(self.output.stdout.clone()).unwrap()
     }
 
-    pub(crate) fn err(&self) -> String {
+    pub fn err(&self) -> String {
         String::from_utf8(self.output.stderr.clone()).unwrap()
     }
 
-    pub(crate) fn json(&self) -> serde_json::Value {
+    pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.out()).unwrap_or_else(|e| panic!("{}: {e}\n{}", self.line, self.out()))
     }
 }

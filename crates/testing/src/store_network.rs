@@ -19,7 +19,7 @@ const SOURCES: [WidthSource; 5] =
     [WidthSource::Assumed, WidthSource::FromLanes, WidthSource::Estimated, WidthSource::Tagged, WidthSource::Surveyed];
 
 /// A grid of `ways` roads, 20 in a row, each cut into two edges per direction. Every third road is one-way.
-pub(crate) fn network(ways: u32) -> Network {
+pub fn network(ways: u32) -> Network {
     let mut network = Network::default();
     for way in 0..ways {
         add_way(&mut network, way);
@@ -156,7 +156,7 @@ fn legal(k: u32) -> Legal {
 }
 
 /// A certificate of every kind, by edge. `seed` distinguishes vehicles.
-pub(crate) fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
+pub fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
     let k = edge.wrapping_mul(2_654_435_761).wrapping_add(seed.wrapping_mul(40_503)) >> 8;
     let verdict = match k % 10 {
         0..=4 => Verdict::Safe,

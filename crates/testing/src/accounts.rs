@@ -2,7 +2,7 @@
 
 use netcert::osm::pbf::ReadAccount;
 
-pub(crate) fn assert_adds_up(account: &ReadAccount) {
+pub fn assert_adds_up(account: &ReadAccount) {
     assert_eq!(account.ways_read, account.ways_kept + account.ways_left_out.values().sum::<u64>());
     let n = account.nodes;
     assert_eq!(n.read, n.placed + n.unnamed + n.deleted + n.invalid + n.superseded);

@@ -2,6 +2,6 @@
 
 use netcert::vehicle::{Catalogue, Vehicle};
 
-pub(crate) fn catalogued(id: &str) -> Vehicle {
+pub fn catalogued(id: &str) -> Vehicle {
     Catalogue::builtin().unwrap().get(id).unwrap().clone()
 }

@@ -1,7 +1,7 @@
 //! Sheets of conditions as somebody fills them in.
 
 /// A sheet as CSV, with the needed values as measured.
-pub(crate) fn filled(sheet: &[u8]) -> Vec<u8> {
+pub fn filled(sheet: &[u8]) -> Vec<u8> {
     let mut reader = csv::Reader::from_reader(sheet);
     let header = reader.headers().unwrap().clone();
     let column = |name: &str| header.iter().position(|known| known == name).unwrap();

@@ -1,18 +1,19 @@
 //! Real extracts, which are not shipped. They are in the folder `NETCERT_EXTRACTS`, or else in `../shared/extracts`. A
 //! test without its extract says so and passes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::skip::skipped;
+use crate::repository;
+use crate::skip::skipped;
 
 /// Path of an extract, if it exists.
-pub(crate) fn extract(name: &str) -> Option<PathBuf> {
+pub fn extract(name: &str) -> Option<PathBuf> {
     folder_with(name).map(|folder| folder.join(name))
 }
 
 /// The folder of the extracts, if it has this file.
-pub(crate) fn folder_with(name: &str) -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts");
+pub fn folder_with(name: &str) -> Option<PathBuf> {
+    let beside = || repository().join("../shared/extracts");
     let folder = std::env::var_os("NETCERT_EXTRACTS").map_or_else(beside, PathBuf::from);
     if folder.join(name).exists() {
         return Some(folder);

@@ -4,18 +4,19 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-use super::skip::skipped;
+use crate::repository;
+use crate::skip::skipped;
 
 /// The interpreter of the environment that reads and writes tables.
-pub(crate) fn tables() -> Option<PathBuf> {
+pub fn tables() -> Option<PathBuf> {
     python("tables", &["duckdb", "pyarrow"])
 }
 
 /// The interpreter of the environment with this name. If it cannot be made, prints why and returns `None`.
-pub(crate) fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
+pub fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/engines").join(name);
+    let folder = repository().join("target/engines").join(name);
     let (python, made) = (folder.join("bin/python"), folder.join("packages"));
     let wanted = packages.join("\n");
     if std::fs::read_to_string(&made).is_ok_and(|text| text == wanted) && runs(&python, &["--version"]) {

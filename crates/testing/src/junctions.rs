@@ -11,20 +11,20 @@ use netcert::stet::{Model, Options, SpanResult};
 use netcert::turns::{Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 
-use super::ascii_map::{AsciiMap, id_of};
-use super::catalogue::catalogued;
+use crate::ascii_map::{AsciiMap, id_of};
+use crate::catalogue::catalogued;
 use netcert::reporter::Silent;
 
-pub(crate) struct Drawn {
-    pub(crate) network: Network,
-    pub(crate) params: TurnParams,
+pub struct Drawn {
+    pub network: Network,
+    pub params: TurnParams,
 }
 
 /// Certificates with the number of their vehicle, in the order made, and their account.
-pub(crate) type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
+pub type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
 
 impl Drawn {
-    pub(crate) fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
+    pub fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
         let place = |_| Place { country: *b"DE", left_hand_traffic };
@@ -33,12 +33,12 @@ impl Drawn {
         Self { network, params: TurnParams { kerbs: Kerbs::everywhere(kerb_m), ..TurnParams::default() } }
     }
 
-    pub(crate) fn facts(&self) -> Vec<TurnFacts> {
+    pub fn facts(&self) -> Vec<TurnFacts> {
         turn_facts(&self.network, &self.params.kerbs)
     }
 
     /// The turn with the nodes that it passes: `EBC` from E over B to C.
-    pub(crate) fn turn(&self, nodes: &str) -> TurnFacts {
+    pub fn turn(&self, nodes: &str) -> TurnFacts {
         let ids: Vec<i64> = nodes.chars().map(id_of).collect();
         let is = |edge: u32, from: i64, to: i64| {
             let edge = &self.network.edges[edge as usize];
@@ -49,12 +49,12 @@ impl Drawn {
     }
 
     /// Roundabouts as one movement.
-    pub(crate) fn passages(&self) -> Vec<TurnFacts> {
+    pub fn passages(&self) -> Vec<TurnFacts> {
         self.facts().into_iter().filter(|turn| !turn.through.is_empty()).collect()
     }
 
     /// The passage from the end of one arm to the end of another: `WE`.
-    pub(crate) fn passage(&self, ends: &str) -> TurnFacts {
+    pub fn passage(&self, ends: &str) -> TurnFacts {
         let ids: Vec<i64> = ends.chars().map(id_of).collect();
         let edge = |edge: u32| &self.network.edges[edge as usize];
         let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
@@ -62,24 +62,24 @@ impl Drawn {
     }
 
     /// Corridors of a turn (named by three nodes) or of a passage (named by two ends).
-    pub(crate) fn corridors(&self, name: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
+    pub fn corridors(&self, name: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
         let turn = if name.len() == 2 { self.passage(name) } else { self.turn(name) };
         corridors_of(&self.network, &turn, policy, &self.params, reach)
     }
 
-    pub(crate) fn best(&self, name: &str, policy: Policy, id: &str) -> Option<SpanResult> {
+    pub fn best(&self, name: &str, policy: Policy, id: &str) -> Option<SpanResult> {
         let vehicle = catalogued(id);
         let made = self.corridors(name, policy, Reach::of(&vehicle).unwrap()).unwrap();
         let model = Model::new(&vehicle).unwrap();
         best_of(&made, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
     }
 
-    pub(crate) fn safe(&self, name: &str, policy: Policy, id: &str) -> bool {
+    pub fn safe(&self, name: &str, policy: Policy, id: &str) -> bool {
         self.best(name, policy, id).is_some_and(|result| result.safe())
     }
 
     /// Certifies all turns and passages. `edges` are the vehicles' verdicts on the edges.
-    pub(crate) fn certified(&self, ids: &[&str], edges: &[Verdict], policy: Policy, threads: usize) -> Certified {
+    pub fn certified(&self, ids: &[&str], edges: &[Verdict], policy: Policy, threads: usize) -> Certified {
         let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
         let edges = vec![edges.to_vec(); models.len()];
         let (corridor, kerbs) = (self.params.corridor, self.params.kerbs.clone());

@@ -2,7 +2,7 @@
 //! repeated, markup characters are escaped. It is independent of the program's writer.
 
 /// Panics with the place of the first fault.
-pub(crate) fn well_formed(text: &str) {
+pub fn well_formed(text: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = text;
     let mut roots = 0;

@@ -5,7 +5,7 @@ use std::fs::OpenOptions;
 use std::io::Write;
 
 /// Says that a test is skipped without this judge, and why. `judge` is the name of a program, of an extract, or of what else is asked.
-pub(crate) fn skipped(judge: &str, why: &str) {
+pub fn skipped(judge: &str, why: &str) {
     eprintln!("skipped: no {judge} ({why})");
     let Some(list) = std::env::var_os("NETCERT_SKIPPED") else { return };
     let mut list = OpenOptions::new().create(true).append(true).open(list).unwrap();

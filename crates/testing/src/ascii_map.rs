@@ -12,7 +12,7 @@ const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
 
 /// A drawing with its ways, and the nodes that the file lacks.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct AsciiMap {
+pub struct AsciiMap {
     nodes: Vec<(char, LonLat)>,
     missing: Vec<char>,
     ways: Vec<(i64, String, String)>,
@@ -26,7 +26,7 @@ const AREAS: i64 = 1 << 40;
 
 impl AsciiMap {
     /// The nodes of a drawing.
-    pub(crate) fn drawn(metres: f64, drawing: &str) -> Self {
+    pub fn drawn(metres: f64, drawing: &str) -> Self {
         let mut nodes = Vec::new();
         for (row, line) in drawing.lines().enumerate() {
             for (column, c) in line.chars().enumerate().filter(|(_, c)| c.is_alphanumeric()) {
@@ -38,37 +38,37 @@ impl AsciiMap {
     }
 
     /// Nodes at the given metres east and north, for places off the grid of characters.
-    pub(crate) fn placed(nodes: &[(char, [f64; 2])]) -> Self {
+    pub fn placed(nodes: &[(char, [f64; 2])]) -> Self {
         let node = |&(c, [east_m, north_m]): &(char, [f64; 2])| (c, offset(ORIGIN, east_m, north_m));
         Self { nodes: nodes.iter().map(node).collect(), ..Self::default() }
     }
 
     /// Adds a way through these nodes. Ids count from 1.
-    pub(crate) fn way(self, nodes: &str, tags: &str) -> Self {
+    pub fn way(self, nodes: &str, tags: &str) -> Self {
         let id = self.ways.len() as i64 + 1;
         self.way_of_id(id, nodes, tags)
     }
 
     /// Adds a way with this id.
-    pub(crate) fn way_of_id(mut self, id: i64, nodes: &str, tags: &str) -> Self {
+    pub fn way_of_id(mut self, id: i64, nodes: &str, tags: &str) -> Self {
         self.ways.push((id, nodes.to_owned(), tags.to_owned()));
         self
     }
 
     /// Removes a way.
-    pub(crate) fn without_way(mut self, id: i64) -> Self {
+    pub fn without_way(mut self, id: i64) -> Self {
         self.ways.retain(|way| way.0 != id);
         self
     }
 
     /// Removes a node from the file, although ways name it.
-    pub(crate) fn missing(mut self, node: char) -> Self {
+    pub fn missing(mut self, node: char) -> Self {
         self.missing.push(node);
         self
     }
 
     /// Puts `node` at the place of `other`.
-    pub(crate) fn same_place(mut self, node: char, other: char) -> Self {
+    pub fn same_place(mut self, node: char, other: char) -> Self {
         let at = self.nodes.iter().find(|n| n.0 == other).unwrap_or_else(|| panic!("{other} is not drawn")).1;
         self.nodes.retain(|n| n.0 != node);
         self.nodes.push((node, at));
@@ -76,13 +76,13 @@ impl AsciiMap {
     }
 
     /// Sets the facts of a tagged node.
-    pub(crate) fn point(mut self, node: char, facts: PointFacts) -> Self {
+    pub fn point(mut self, node: char, facts: PointFacts) -> Self {
         self.points.push((node, facts));
         self
     }
 
     /// Adds a turn restriction with these tags (`type=restriction` by default). Ids count from 1.
-    pub(crate) fn restriction(mut self, from: &[i64], via: Via, to: &[i64], tags: &str) -> Self {
+    pub fn restriction(mut self, from: &[i64], via: Via, to: &[i64], tags: &str) -> Self {
         let mut pairs: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
         if pairs.iter().all(|tag| tag.0 != "type") {
             pairs.push(("type", "restriction"));
@@ -94,7 +94,7 @@ impl AsciiMap {
     }
 
     /// Adds a closed way through places given in metres east and north of a node. Its last reference equals the first.
-    pub(crate) fn area(mut self, node: char, corners: &[[f64; 2]], tags: &str) -> Self {
+    pub fn area(mut self, node: char, corners: &[[f64; 2]], tags: &str) -> Self {
         let at = self.nodes.iter().find(|n| n.0 == node).unwrap_or_else(|| panic!("{node} is not drawn")).1;
         let ring = corners.iter().map(|&[east_m, north_m]| offset(at, east_m, north_m)).collect();
         self.areas.push((tags.to_owned(), ring));
@@ -102,7 +102,7 @@ impl AsciiMap {
     }
 
     /// The extract that reading a file of this map would give.
-    pub(crate) fn extract(&self) -> Extract {
+    pub fn extract(&self) -> Extract {
         let mut extract = Extract::default();
         let mut ways = self.ways.clone();
         ways.sort();
@@ -145,17 +145,17 @@ impl AsciiMap {
 }
 
 /// The id of a drawn node.
-pub(crate) fn id_of(node: char) -> i64 {
+pub fn id_of(node: char) -> i64 {
     i64::from(u32::from(node))
 }
 
 /// The drawn node with an id.
-pub(crate) fn node_of(id: i64) -> char {
+pub fn node_of(id: i64) -> char {
     u32::try_from(id).ok().and_then(char::from_u32).unwrap_or('?')
 }
 
 /// The place east and north of another one, accurate enough for a drawing.
-pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
+pub fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
     const DEGREE_M: f64 = 111_195.0;
     let cos = from.degrees().1.to_radians().cos();
     LonLat {
@@ -165,7 +165,7 @@ pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
 }
 
 /// Facts of a way with these tags, written `key=value` and separated by spaces.
-pub(crate) fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
+pub fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
     let tags: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
     let draft = facts::way_facts(&tags).unwrap_or_else(|why| panic!("{tags:?} is no road: {why}"));
     let name = draft.name.map(|name| strings.intern(name));
@@ -176,29 +176,29 @@ pub(crate) fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
 }
 
 /// The same country everywhere.
-pub(crate) fn somewhere(_: LonLat) -> Place {
+pub fn somewhere(_: LonLat) -> Place {
     Place { country: *b"DE", left_hand_traffic: false }
 }
 
 /// No road has a width.
-pub(crate) fn no_sections(_: &WayFacts, _: &Place, _: Option<f64>) -> [CrossSection; 2] {
+pub fn no_sections(_: &WayFacts, _: &Place, _: Option<f64>) -> [CrossSection; 2] {
     [CrossSection { lane: None, direction: None, carriageway: None }; 2]
 }
 
 /// The network of a map in one country, without widths.
-pub(crate) fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
+pub fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
     build(map.extract(), &somewhere, &no_sections)
 }
 
 /// The edge from one drawn node to another, `AB`.
-pub(crate) fn edge(network: &Network, ends: &str) -> u32 {
+pub fn edge(network: &Network, ends: &str) -> u32 {
     let ends: Vec<i64> = ends.chars().map(id_of).collect();
     let found = (0..).zip(&network.edges).find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
     found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
 }
 
 /// All edges in order: `AB` from A to B, followed by `!` if barred and `~` if cut.
-pub(crate) fn edges(network: &Network) -> String {
+pub fn edges(network: &Network) -> String {
     let edge = |e: &Edge| {
         let mut text = ends(e);
         text.extend(e.barred.then_some('!'));
@@ -214,7 +214,7 @@ fn ends(edge: &Edge) -> String {
 
 /// All strokes in order, one per line: their nodes in driving order, with the approach's nodes before `>`, and `@`
 /// after a closed stroke.
-pub(crate) fn strokes(network: &Network) -> String {
+pub fn strokes(network: &Network) -> String {
     let nodes = |range: std::ops::Range<u32>| {
         let edges = network.stroke_edges[range.start as usize..range.end as usize].iter();
         let ends: Vec<String> = edges.map(|&e| ends(&network.edges[e as usize])).collect();

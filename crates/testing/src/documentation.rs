@@ -1,13 +1,13 @@
-// What the examples of the documentation stand on. They include this file, each as a program of its own.
+//! What the examples of the documentation stand on.
 
 /// The drawn region, certified for a tug with four trailers. The folder goes with the first value.
-#[allow(dead_code)]
 pub fn demo_region(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
     use netcert::pipeline::{Ingest, Selection, ingest};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("demo.gpkg");
+    let demo = crate::demo::demo();
     let ask = Ingest {
-        inputs: &[std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf"))],
+        inputs: &[demo.as_path()],
         db: &path,
         catalogue: &netcert::vehicle::Catalogue::builtin().expect("the catalogue"),
         selection: &Selection::Ids(vec!["AGV-TUG4".to_owned()]),
@@ -26,13 +26,13 @@ pub fn demo_region(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
 }
 
 /// Before and behind a turn that the tug may take.
-#[allow(dead_code)]
 pub fn two_places(path: &std::path::Path) -> [netcert::route::Position; 2] {
     use netcert::osm::facts::Policy;
     use netcert::store::{Database, QueryOptions, TurnQuery};
     let mut database = Database::open(path).expect("the demo");
     let rows = database.query_turns(&TurnQuery::new("AGV-TUG4", Policy::Carriageway)).expect("its turns");
-    let turn = rows.into_iter().find(|row| row.certificate.verdict == netcert::verdict::Verdict::Safe).expect("a safe turn");
+    let turn =
+        rows.into_iter().find(|row| row.certificate.verdict == netcert::verdict::Verdict::Safe).expect("a safe turn");
     [turn.from_edge, turn.to_edge].map(|edge_id| {
         let options = QueryOptions { edge_id: Some(edge_id), ..QueryOptions::new("AGV-TUG4", Policy::Carriageway) };
         let row = database.query(&options).expect("its edges").next().expect("the edge").expect("a row");

@@ -1,5 +1,4 @@
 //! A certificate over a whole corridor against the adversary.
-#![allow(clippy::print_stdout)]
 
 use netcert::corridor::Corridor;
 use netcert::stet::{Certificate, Side};

@@ -16,14 +16,14 @@ use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
 use netcert::turns::{Kerbs, turn_facts};
 
-use super::catalogue::catalogued;
+use crate::catalogue::catalogued;
 use netcert::reporter::Silent;
 
 /// A network with its movements.
-pub(crate) struct Region {
-    pub(crate) roads: Arc<Roads>,
-    pub(crate) settings: Settings,
-    pub(crate) kerbs: Kerbs,
+pub struct Region {
+    pub roads: Arc<Roads>,
+    pub settings: Settings,
+    pub kerbs: Kerbs,
 }
 
 impl Deref for Region {
@@ -35,7 +35,7 @@ impl Deref for Region {
 }
 
 /// A vehicle on it. Tests may change its permits between two planners.
-pub(crate) struct Driver(pub(crate) Arc<route::Driver>);
+pub struct Driver(pub Arc<route::Driver>);
 
 impl Deref for Driver {
     type Target = route::Driver;
@@ -52,12 +52,12 @@ impl DerefMut for Driver {
 }
 
 impl Region {
-    pub(crate) fn read(path: &Path, policy: Policy) -> Self {
+    pub fn read(path: &Path, policy: Policy) -> Self {
         Self::of(read_extract(path, &|_| ()).unwrap(), policy)
     }
 
     /// The roads within the given degrees of the middle of an extract's nodes.
-    pub(crate) fn read_middle(path: &Path, policy: Policy, about_deg: [f64; 2]) -> Self {
+    pub fn read_middle(path: &Path, policy: Policy, about_deg: [f64; 2]) -> Self {
         let mut extract = read_extract(path, &|_| ()).unwrap();
         let degrees = |id: &i64| extract.nodes.place(*id).map(LonLat::degrees);
         let refs = |way: &Way| extract.refs[way.refs.start as usize..way.refs.end as usize].iter();
@@ -73,7 +73,7 @@ impl Region {
         Self::of(extract, policy)
     }
 
-    pub(crate) fn of(extract: Extract, policy: Policy) -> Self {
+    pub fn of(extract: Extract, policy: Policy) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
         let (network, _) = build(extract, &|position| countries.place(position), &|way, place, ring| {
@@ -84,7 +84,7 @@ impl Region {
         Self { roads: Roads::new(network), settings, kerbs: Kerbs::default() }
     }
 
-    pub(crate) fn driver(&self, id: &str) -> Driver {
+    pub fn driver(&self, id: &str) -> Driver {
         let model = Model::new(&catalogued(id)).unwrap();
         let models = std::slice::from_ref(&model);
         let settings = self.settings();
@@ -124,15 +124,15 @@ impl Region {
         Settings { kerbs: self.kerbs.clone(), ..self.settings.clone() }
     }
 
-    pub(crate) fn strokes(&self) -> Strokes {
+    pub fn strokes(&self) -> Strokes {
         Strokes::new(&self.roads, self.settings())
     }
 
-    pub(crate) fn turns(driver: &Driver) -> MadeTurns {
+    pub fn turns(driver: &Driver) -> MadeTurns {
         MadeTurns::new(Arc::clone(&driver.0))
     }
 
-    pub(crate) fn planner(&self, driver: &Driver, measure: Measure) -> Planner {
+    pub fn planner(&self, driver: &Driver, measure: Measure) -> Planner {
         Planner::new(&self.roads, Arc::clone(&driver.0), Speeds::builtin().unwrap(), measure)
     }
 }
