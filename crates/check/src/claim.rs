@@ -4,16 +4,16 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use crate::chain::Chain;
+use crate::curve::Place;
+use crate::fit::RoadError;
 use crate::leeway::{Swept, foot};
-use crate::motion::{Motion, STEPS};
+use crate::motion::Motion;
 use crate::plane::Cramped;
-use crate::road::{Place, Road, RoadError};
+use crate::road::Road;
 use crate::search::{Shortfall, Targets};
+use crate::{STEPS, TOLERANCE_M};
 use netcert_base::corridor::Corridor;
 
-/// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
-/// into different steps. The tolerance is applied here and nowhere else.
-pub const TOLERANCE_M: f64 = 1e-3;
 /// The tolerance of hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
@@ -326,7 +326,7 @@ impl<'a> Subject<'a> {
         let (ahead, behind) = self.chain.reach_m();
         let reach = |metres: f64| (FARTHEST * metres / self.road.spacing).ceil() as usize;
         let first = (self.road.lead + stations.start).saturating_sub(reach(ahead)) * STEPS;
-        (first..(self.road.lead + stations.end + reach(behind)) * STEPS).any(|step| self.road.plane.decides(step))
+        (first..(self.road.lead + stations.end + reach(behind)) * STEPS).any(|step| self.road.areas.decides(step))
     }
 
     /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`.

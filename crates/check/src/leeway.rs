@@ -8,15 +8,17 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::UP;
 use crate::adjoint::{self, Output};
 use crate::chain::Chain;
+use crate::curve::Place;
 use crate::gains::Knots;
 use crate::interval::Interval;
-use crate::motion::{Motion, Pose, STEPS, along};
-use crate::road::{Place, Road};
+use crate::motion::{Motion, Pose};
+use crate::road::Road;
 use crate::search::{Shortfalls, Targets};
 use crate::tubes::{Tube, Tubes};
+use crate::vector::along;
+use crate::{STEPS, UP};
 use netcert_base::watch;
 
 /// Decisions closer than this are repeated in intervals, metres.

@@ -26,12 +26,16 @@
 //! within `leeway::CLOSE_M` of the claim are repeated in intervals.
 
 mod adjoint;
+mod areas;
 mod chain;
 mod claim;
 mod coarse;
+mod curve;
 #[cfg(test)]
 mod drawn;
+mod fit;
 mod gains;
+mod hull;
 mod interval;
 mod leeway;
 mod link;
@@ -42,12 +46,20 @@ pub mod printed;
 mod road;
 mod search;
 mod tubes;
+mod vector;
 
 pub use chain::Chain;
-pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
+pub use claim::{Finding, Outcome, SpanClaim, Subject, Weight, finding};
+pub use fit::RoadError;
 pub use interval::Interval;
 pub use leeway::Swept;
-pub use road::RoadError;
+
+/// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
+/// into different steps. `claim` applies the tolerance, and nothing else does.
+pub const TOLERANCE_M: f64 = 1e-3;
+
+/// Steps of the nominal motion per station.
+pub(crate) const STEPS: usize = 4;
 
 /// Rounds up a sum of at most some thousand products of non-negative numbers, each of a few factors.
 pub(crate) const UP: f64 = 1.0 + 1e-12;

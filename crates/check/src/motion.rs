@@ -4,12 +4,12 @@
 //! A curve deviates from its chord by κℓ²/8. At every hitch, not only at the steer axle, this is added to the
 //! coupling's deviation. With four steps per station it is 0.4 mm at a radius of 20 m.
 
+use crate::STEPS;
 use crate::chain::Chain;
 use crate::link::Link;
 use crate::road::Road;
+use crate::vector::{along, cross, length};
 
-/// Steps per station.
-pub(crate) const STEPS: usize = 4;
 /// Deviation added for rounding of the couplings' places, metres. Coordinates count from the corridor's first station.
 pub(crate) const DEFECT_M: f64 = 1e-8;
 
@@ -159,19 +159,6 @@ fn led(link: &Link, h: [f64; 2], u: [f64; 2], by: f64) -> Pose {
     let size = length([x, y]);
     let u = [x / size, y / size];
     Pose { p: along(h, -link.l, u), u }
-}
-
-/// The length of a vector, metres. The library's `hypot` guards against numbers that roads do not have, and took 6 % of the checker's time.
-pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-pub(crate) fn along(p: [f64; 2], by: f64, u: [f64; 2]) -> [f64; 2] {
-    [p[0] + by * u[0], p[1] + by * u[1]]
 }
 
 fn planned(road: &Road, shift: &impl Fn(f64) -> f64, s: f64) -> [f64; 2] {

@@ -51,12 +51,11 @@
 
 use std::ops::Range;
 
-use crate::UP;
-use crate::claim::TOLERANCE_M;
+use crate::areas::Boundary;
+use crate::hull::{Segment, hull, way};
 use crate::leeway::{Swept, point};
-use crate::motion::{STEPS, length};
-use crate::road::RoadError;
-use netcert_base::corridor::{Area, AreaSpan, Corridor};
+use crate::vector::{Point, framed, length};
+use crate::{TOLERANCE_M, UP};
 use netcert_base::watch;
 
 /// Deducted for rounding, metres. Coordinates of 1e8 m are exact to 3e-8.
@@ -67,11 +66,6 @@ const FINEST_M: f64 = 1e-4;
 const SMALL_M: f64 = 0.03;
 /// The adjoint runs only for pieces of a body no longer than this, metres.
 const SHARP_M: f64 = 1.0;
-/// Largest coordinates (metres), and most vertices of one area.
-const FARTHEST_M: f64 = 1e8;
-const MOST_VERTICES: usize = 100_000;
-/// Strips into which a boundary is sorted. More hardly help, and a boundary of long segments is in all of them.
-const STRIPS: usize = 64;
 /// Most comparisons of cells with segments, for one piece in one step. Some thousand decide an honest claim.
 const MOST_WORK: usize = 10_000_000;
 /// A comparison in a direction counts as so many.
@@ -84,125 +78,6 @@ const TURNS: [f64; 7] = [0.0, -0.6, -0.3, -0.1, 0.1, 0.3, 0.6];
 const TURN_STEPS: [f64; 6] = [0.1, 0.05, 0.025, 0.012, 0.006, 0.003];
 /// Once a claim has failed, only places that are worse by this are looked for, metres.
 const WORSE_M: f64 = 0.01;
-
-type Point = [f64; 2];
-type Segment = [Point; 2];
-
-/// The areas of a corridor.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Plane {
-    spans: Vec<Span>,
-}
-
-#[derive(Debug, Clone)]
-struct Span {
-    steps: Range<usize>,
-    boundary: Boundary,
-}
-
-impl Plane {
-    /// The areas in the road's frame: metres from the corridor's first station, and steps from the road's start. The road
-    /// begins `lead` stations before the corridor.
-    ///
-    /// # Errors
-    /// [`RoadError`] at the first station of an area that is malformed.
-    pub(crate) fn new(corridor: &Corridor, lead: usize) -> Result<Self, RoadError> {
-        let span = |span: &AreaSpan| {
-            let heads = &span.heads;
-            let wrong = |problem| RoadError { station: heads.start, problem };
-            if heads.len() < 2 || heads.end > corridor.len() {
-                let n = corridor.len();
-                return Err(wrong(format!(
-                    "an area for stations {heads:?}; it needs two at least, of the corridor's {n}"
-                )));
-            }
-            let boundary = Boundary::new(&span.area, [corridor.x[0], corridor.y[0]]).map_err(wrong)?;
-            Ok(Span { steps: (lead + heads.start) * STEPS..(lead + heads.end - 1) * STEPS, boundary })
-        };
-        Ok(Self { spans: corridor.areas.iter().map(span).collect::<Result<_, _>>()? })
-    }
-
-    /// Whether an area, and not the corridor's half-widths, decides in a step.
-    pub(crate) fn decides(&self, step: usize) -> bool {
-        self.spans.iter().any(|span| span.steps.contains(&step))
-    }
-
-    /// The spans that count in a step.
-    fn active(&self, step: usize) -> Vec<usize> {
-        (0..self.spans.len()).filter(|&k| self.spans[k].steps.contains(&step)).collect()
-    }
-}
-
-/// An area's boundary. Its segments are sorted into strips of northing; a segment is in each strip that it meets.
-#[derive(Debug, Clone)]
-struct Boundary {
-    segments: Vec<Segment>,
-    strips: Vec<Vec<u32>>,
-    low: f64,
-    height: f64,
-}
-
-impl Boundary {
-    fn new(area: &Area, origin: Point) -> Result<Self, String> {
-        let vertices = || area.rings.iter().flatten();
-        if vertices().count() > MOST_VERTICES {
-            return Err(format!("an area of {} vertices; at most {MOST_VERTICES}", vertices().count()));
-        }
-        if area.rings.is_empty() {
-            return Err("an area without a boundary".to_owned());
-        }
-        if let Some(ring) = area.rings.iter().find(|ring| ring.len() < 3) {
-            return Err(format!("a ring of {} vertices in an area; it needs 3", ring.len()));
-        }
-        if let Some(vertex) = vertices().find(|vertex| !vertex.iter().all(|x| x.abs() < FARTHEST_M)) {
-            return Err(format!("an area's vertex {vertex:?} is not finite and below 1e8"));
-        }
-        let own = |[x, y]: Point| [x - origin[0], y - origin[1]];
-        let segments: Vec<Segment> = area.segments().map(|segment| segment.map(own)).collect();
-        let ends = |y: fn(f64, f64) -> f64, from: f64| segments.iter().fold(from, |most, [a, _]| y(most, a[1]));
-        let (low, high) = (ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY));
-        let height = ((high - low) / STRIPS as f64).max(1e-3);
-        let mut boundary = Self { segments: Vec::new(), strips: vec![Vec::new(); STRIPS], low, height };
-        for (k, [a, b]) in segments.iter().enumerate() {
-            for strip in boundary.strips_of(a[1].min(b[1]), a[1].max(b[1])) {
-                boundary.strips[strip].push(k as u32);
-            }
-        }
-        boundary.segments = segments;
-        Ok(boundary)
-    }
-
-    /// The strips between two northings. Beyond the boundary it is the first or the last.
-    fn strips_of(&self, from: f64, to: f64) -> Range<usize> {
-        let at = |y: f64| (((y - self.low) / self.height).max(0.0) as usize).min(STRIPS - 1);
-        at(from)..at(to) + 1
-    }
-
-    /// The segments that may be within `reach` of the hull of some points.
-    fn near(&self, points: &[Point], reach: f64) -> Vec<u32> {
-        // A negative claim asks for less than none.
-        let reach = reach.max(0.0);
-        let [low, high] = bounds(points);
-        let meets = |k: &u32| {
-            let [from, to] = bounds(&self.segments[*k as usize]);
-            (0..2).all(|i| from[i] <= high[i] + reach && to[i] >= low[i] - reach)
-        };
-        let strips = &self.strips[self.strips_of(low[1] - reach, high[1] + reach)];
-        let mut near: Vec<u32> = strips.iter().flatten().copied().filter(meets).collect();
-        near.sort_unstable();
-        near.dedup();
-        near
-    }
-
-    /// Whether a place is inside: whether a ray to the east crosses the boundary an odd number of times.
-    fn contains(&self, [x, y]: Point) -> bool {
-        let crossed = |k: &&u32| {
-            let [a, b] = self.segments[**k as usize];
-            (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-        };
-        self.strips[self.strips_of(y, y)].iter().flatten().filter(crossed).count() % 2 == 1
-    }
-}
 
 /// The place where a claim fails by most in an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -271,7 +146,7 @@ impl Swept<'_> {
         claims: &[(Range<usize>, f64)],
         only: Option<(usize, usize)>,
     ) -> Vec<Option<Cramped>> {
-        if self.road.plane.spans.is_empty() {
+        if self.road.areas.spans.is_empty() {
             return vec![None; claims.len()];
         }
         // Claims of neighbouring spans share steps.
@@ -289,7 +164,7 @@ impl Swept<'_> {
         let mut worst: Option<Cramped> = None;
         let mut before = Vec::new();
         for step in steps {
-            let active = self.road.plane.active(step);
+            let active = self.road.areas.active(step);
             let whole = active != before;
             before.clone_from(&active);
             if active.is_empty() || !whole && proved[step] >= claimed {
@@ -338,7 +213,7 @@ impl Swept<'_> {
     /// The place of a piece whose bound is least, with the bound, if that is below `target`. Once a claim is `refuted`, the
     /// adjoint is spared: the search ends at a place whose bound it may still improve.
     fn least(&mut self, piece: Piece, mut target: f64, active: &[usize], mut refuted: bool) -> Option<(Point, f64)> {
-        let spans = &self.road.plane.spans;
+        let spans = &self.road.areas.spans;
         let boundaries: Vec<&Boundary> = active.iter().map(|&k| &spans[k].boundary).collect();
         let mut strict = target >= -TOLERANCE_M;
         // A claim below zero concedes that a place is so far outside.
@@ -649,78 +524,6 @@ impl Taken {
 fn turned([x, y]: Point, tangent: f64) -> Point {
     let cosine = 1.0 / length([1.0, tangent]);
     [(x - y * tangent) * cosine, (y + x * tangent) * cosine]
-}
-
-/// The parts of a vector along a heading, and to its left.
-fn framed(m: Point, u: Point) -> [f64; 2] {
-    [m[0] * u[0] + m[1] * u[1], m[1] * u[0] - m[0] * u[1]]
-}
-
-/// The least and the greatest coordinates of some points.
-fn bounds(points: &[Point]) -> [Point; 2] {
-    points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
-        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
-    })
-}
-
-/// Twice the area of a triangle, positive if it is traversed to the left.
-fn turn(a: Point, b: Point, c: Point) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// The vertices of the convex hull of some points, to the left (Andrew's monotone chain).
-fn hull(points: &[Point]) -> Vec<Point> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    sorted.dedup();
-    if sorted.len() < 3 {
-        return sorted;
-    }
-    let chain = |points: &mut dyn Iterator<Item = Point>| {
-        let mut chain: Vec<Point> = Vec::new();
-        for p in points {
-            while chain.len() >= 2 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0 {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    let mut hull = chain(&mut sorted.iter().copied());
-    hull.extend(chain(&mut sorted.iter().rev().copied()));
-    hull
-}
-
-/// The shortest way from a convex polygon to a segment. A polygon of one or two vertices is a point or a segment.
-fn way(hull: &[Point], segment: Segment) -> Point {
-    let edges = || (0..hull.len()).map(|i| [hull[i], hull[(i + 1) % hull.len()]]);
-    if hull.len() > 2 && edges().all(|[a, b]| turn(a, b, segment[0]) >= 0.0) {
-        return [0.0; 2];
-    }
-    edges().map(|edge| apart(edge, segment)).fold([f64::INFINITY; 2], shorter)
-}
-
-fn shorter(x: Point, y: Point) -> Point {
-    if y[0] * y[0] + y[1] * y[1] < x[0] * x[0] + x[1] * x[1] { y } else { x }
-}
-
-/// The shortest way from a segment to another.
-fn apart([a, b]: Segment, [c, d]: Segment) -> Point {
-    let crossed = turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
-    if crossed {
-        return [0.0; 2];
-    }
-    let back = |p: Point| to_segment(p, [a, b]).map(|x| -x);
-    [to_segment(b, [c, d]), back(c), back(d)].into_iter().fold(to_segment(a, [c, d]), shorter)
-}
-
-/// The shortest way from a place to a segment.
-fn to_segment(p: Point, [a, b]: Segment) -> Point {
-    let (way, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-    let square = way[0] * way[0] + way[1] * way[1];
-    let share = if square > 0.0 { ((from[0] * way[0] + from[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    [share * way[0] - from[0], share * way[1] - from[1]]
 }
 
 #[cfg(test)]

@@ -3,45 +3,14 @@
 //! Between stations curvature and half-widths are linear. Before the first and after the last station the road
 //! continues straight (proof, section 8). A corridor whose stations do not fit each other is refused.
 
-use crate::motion::length;
-use crate::plane::Plane;
+use crate::areas::Areas;
+use crate::curve::{Place, curve};
+use crate::fit::{RoadError, check_station, finite};
+use crate::vector::length;
 use netcert_base::corridor::Corridor;
 
-/// Largest deviation of a station from the curve that leads to it, metres and radians, per metre of spacing. In a file
-/// a larger deviation is an error. On the map's strokes nothing is confirmed on that stretch.
-const PLACE_TOLERANCE_M: f64 = 0.02;
-const HEADING_TOLERANCE_RAD: f64 = 0.04;
 /// Roads of less curvature are straight, 1/m.
 const BENT: f64 = 1e-3;
-/// Largest turn of a corridor from one station to the next, radians. Beyond it the proof's second order says little.
-const MOST_TURN_RAD: f64 = 0.5;
-/// Bound of half-widths that tags and users can mean, metres.
-const MOST_WIDTH_M: f64 = 1e4;
-
-/// Why stations do not form a corridor.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("station {station}: {problem}")]
-pub struct RoadError {
-    /// Station, from 0.
-    pub station: usize,
-    /// The fault and its size.
-    pub problem: String,
-}
-
-/// Three-point Gauss-Legendre rule on 0..=1. It is exact to 1e-7 m here (turns below half a radian per station).
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-
-/// A place on the centreline.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    /// Metres from the corridor's first station.
-    pub(crate) c: [f64; 2],
-    /// Unit tangent.
-    pub(crate) t: [f64; 2],
-    /// Curvature, 1/m, positive to the left.
-    pub(crate) curvature: f64,
-}
 
 /// The road between some stations.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +52,7 @@ pub(crate) struct Road {
     /// Sums, over all stations before each, by which the slopes of the half-widths grow, metres a station.
     growth: Vec<[f64; 2]>,
     /// Areas that stand in for the half-widths.
-    pub(crate) plane: Plane,
+    pub(crate) areas: Areas,
 }
 
 impl Road {
@@ -129,7 +98,7 @@ impl Road {
             slack: Vec::with_capacity(lead + n + tail),
             jumps: Vec::with_capacity(lead + n + tail),
             growth: Vec::new(),
-            plane: Plane::new(corridor, lead)?,
+            areas: Areas::new(corridor, lead)?,
         };
         for k in 0..lead + n + tail {
             let inner = k.saturating_sub(lead).min(n - 1);
@@ -183,16 +152,16 @@ impl Road {
     /// The centreline at `s` (in stations, extensions included).
     pub(crate) fn place(&self, s: f64) -> Place {
         let (k, x) = self.split(s);
-        self.curve(k, x)
+        curve(self.stations[k], self.bends[k], self.spacing, x)
     }
 
     /// Place and direction at `s` on the centreline as the plan takes it. It meets the next station in place and direction (A1), by a
     /// cubic over the whole stretch. Otherwise the course would jump at the station.
     pub(crate) fn course(&self, s: f64) -> ([f64; 2], [f64; 2]) {
         let (k, x) = self.split(s);
-        let Place { c, t, .. } = self.curve(k, x);
+        let Place { c, t, .. } = curve(self.stations[k], self.bends[k], self.spacing, x);
         let Some(next) = self.stations.get(k + 1) else { return (c, t) };
-        let end = self.curve(k, self.spacing);
+        let end = curve(self.stations[k], self.bends[k], self.spacing, self.spacing);
         let turn = end.t[0] * next.t[1] - end.t[1] * next.t[0];
         let aside = [-turn * next.t[1], turn * next.t[0]];
         let share = x / self.spacing;
@@ -204,29 +173,6 @@ impl Road {
         let direction = met(t, rate, bending);
         let length = length(direction).max(0.1);
         (met(c, moved, bent), direction.map(|part| part / length))
-    }
-
-    /// The centreline `x` metres after station `k`.
-    fn curve(&self, k: usize, x: f64) -> Place {
-        let from = self.stations[k];
-        let [k0, k1] = self.bends[k];
-        if k0 == 0.0 && k1 == 0.0 {
-            return Place { c: [from.c[0] + x * from.t[0], from.c[1] + x * from.t[1]], t: from.t, curvature: 0.0 };
-        }
-        let rate = (k1 - k0) / self.spacing;
-        let (mut ahead, mut aside) = (0.0, 0.0);
-        for (node, weight) in GAUSS {
-            let (sin, cos) = small_sin_cos(x * node * (k0 + 0.5 * rate * x * node));
-            ahead += weight * x * cos;
-            aside += weight * x * sin;
-        }
-        let (sin, cos) = small_sin_cos(x * (k0 + 0.5 * rate * x));
-        let t = from.t;
-        Place {
-            c: [from.c[0] + ahead * t[0] - aside * t[1], from.c[1] + ahead * t[1] + aside * t[0]],
-            t: [cos * t[0] - sin * t[1], cos * t[1] + sin * t[0]],
-            curvature: k0 + rate * x,
-        }
     }
 
     /// Half-width on a side (0 left, 1 right) at `s`, metres, and its slope per metre.
@@ -358,69 +304,4 @@ fn most_change(bends: &[[f64; 2]]) -> f64 {
 fn up(s: f64) -> usize {
     let whole = s.max(0.0) as usize;
     whole.saturating_add(usize::from(whole as f64 != s.max(0.0)))
-}
-
-/// Sine and cosine of at most half a radian, to 1e-11. Their series are written without divisions, which would take most of the time.
-fn small_sin_cos(x: f64) -> (f64, f64) {
-    const SIN: [f64; 4] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0];
-    const COS: [f64; 5] = [-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0];
-    let q = x * x;
-    let sin = x + x * q * (SIN[0] + q * (SIN[1] + q * (SIN[2] + q * SIN[3])));
-    let cos = 1.0 + q * (COS[0] + q * (COS[1] + q * (COS[2] + q * (COS[3] + q * COS[4]))));
-    (sin, cos)
-}
-
-/// Tests that station `k` has usable values and follows from the one before it. Returns the error bound of the curve
-/// from there (metres), and the heading difference at its end (radians).
-fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
-    let wrong = |problem: String| Err(RoadError { station: k, problem });
-    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
-    if !finite(c, k) {
-        return wrong(format!("{values:?} are not all finite and below 1e8: x, y, heading, curvature, half-widths"));
-    }
-    for (name, w, side) in [("left", c.left_m[k], 1.0), ("right", c.right_m[k], -1.0)] {
-        if !(w > 0.0 && w < MOST_WIDTH_M) {
-            return wrong(format!("a half-width of {w} m on the {name}"));
-        }
-        if side * c.curvature[k] * w >= 1.0 {
-            return wrong(format!("the normals cross within the half-width of {w} m on the {name}"));
-        }
-    }
-    let Some(before) = k.checked_sub(1) else { return Ok([0.0; 2]) };
-    let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
-    if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
-        return wrong(format!("the road turns by {turn:.2} rad from the station before, too much for this spacing"));
-    }
-    let turned = c.heading[k] - c.heading[before] - turn;
-    let turned = (turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round()).abs();
-    let off = turned;
-    if off > HEADING_TOLERANCE_RAD * c.spacing_m {
-        return wrong(format!("its heading differs by {off:.4} rad from what the curvatures give"));
-    }
-    let place =
-        Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
-    let stretch = Road {
-        spacing: c.spacing_m,
-        lead: 0,
-        count: 1,
-        stations: vec![place],
-        bends: vec![[c.curvature[before], c.curvature[k]]],
-        widths: Vec::new(),
-        slack: vec![0.0],
-        jumps: vec![0.0],
-        growth: Vec::new(),
-        plane: Plane::default(),
-    };
-    let at = stretch.place(1.0).c;
-    let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
-    if off > PLACE_TOLERANCE_M * c.spacing_m {
-        return wrong(format!("it lies {off:.4} m from where the station before and the curvatures lead"));
-    }
-    // A heading error of x moves the middle of the chord by an eighth of x per metre.
-    Ok([off + 0.125 * c.spacing_m * turned, turned])
-}
-
-fn finite(c: &Corridor, k: usize) -> bool {
-    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
-    values.iter().all(|v| v.is_finite() && v.abs() < 1e8)
 }

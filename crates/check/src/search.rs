@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
+use crate::STEPS;
 use crate::coarse::{Slab, Spot};
 use crate::leeway::{CLOSE_M, Cell, Hint, Swept};
-use crate::motion::STEPS;
 use netcert_base::watch;
 
 /// Most halvings of a body for coarse bounds.
@@ -57,10 +57,10 @@ impl Swept<'_> {
         for start in all.clone().step_by(STEPS) {
             watch::poll();
             let steps = start..(start + STEPS).min(all.end);
-            if steps.clone().any(|step| self.road.plane.decides(step)) {
+            if steps.clone().any(|step| self.road.areas.decides(step)) {
                 // In areas feet move on unseen.
                 spots.fill([None; 2]);
-                for step in steps.filter(|&step| !self.road.plane.decides(step)) {
+                for step in steps.filter(|&step| !self.road.areas.decides(step)) {
                     for (unit, side) in units.clone().flat_map(|unit| [(unit, 0), (unit, 1)]) {
                         self.cell(&self.whole(unit, side, step), [Hint::NONE; 2], targets, &mut found);
                     }

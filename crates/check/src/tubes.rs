@@ -3,11 +3,11 @@
 //!
 //! Each step uses the worst coefficients within it, so the bounds hold between nodes as well.
 
-use crate::UP;
 use crate::adjoint::{self, Coefficients, Output};
 use crate::chain::Chain;
 use crate::link::Link;
-use crate::motion::{Motion, STEPS, Swing};
+use crate::motion::{Motion, Swing};
+use crate::{STEPS, UP};
 
 /// Assumption A3.
 const MOST_HEADING_RAD: f64 = 0.6;

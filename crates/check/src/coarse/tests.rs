@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::STEPS;
 use crate::claim::{SpanClaim, Subject};
 use crate::drawn::{chain, random, unit};
 use crate::leeway::{Cell, Hint};
-use crate::motion::STEPS;
 use netcert_base::corridor::Corridor;
 
 /// A number up to `most` to either side of 0.

@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use super::*;
+use crate::STEPS;
+use crate::areas::MOST_VERTICES;
 use crate::chain::Chain;
 use crate::claim::{SpanClaim, Subject, Weight};
 use crate::drawn::{chain, random, unit};
-use netcert_base::corridor::CurvatureProfile;
+use crate::hull::to_segment;
+use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 use netcert_base::vehicle::Unit;
 
 /// A tractor with a semi-trailer, 16 m long.

@@ -1,0 +1,66 @@
+//! Whether the stations of a corridor fit each other.
+
+use crate::curve::{Place, curve};
+use netcert_base::corridor::Corridor;
+
+/// Largest deviation of a station from the curve that leads to it, metres and radians, per metre of spacing. In a file
+/// a larger deviation is an error. On the map's strokes nothing is confirmed on that stretch.
+const PLACE_TOLERANCE_M: f64 = 0.02;
+const HEADING_TOLERANCE_RAD: f64 = 0.04;
+/// Largest turn of a corridor from one station to the next, radians. Beyond it the proof's second order says little.
+const MOST_TURN_RAD: f64 = 0.5;
+/// Bound of half-widths that tags and users can mean, metres.
+const MOST_WIDTH_M: f64 = 1e4;
+
+/// Why stations do not form a corridor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("station {station}: {problem}")]
+pub struct RoadError {
+    /// Station, from 0.
+    pub station: usize,
+    /// The fault and its size.
+    pub problem: String,
+}
+
+/// Tests that station `k` has usable values and follows from the one before it. Returns the error bound of the curve
+/// from there (metres), and the heading difference at its end (radians).
+pub(crate) fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
+    let wrong = |problem: String| Err(RoadError { station: k, problem });
+    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
+    if !finite(c, k) {
+        return wrong(format!("{values:?} are not all finite and below 1e8: x, y, heading, curvature, half-widths"));
+    }
+    for (name, w, side) in [("left", c.left_m[k], 1.0), ("right", c.right_m[k], -1.0)] {
+        if !(w > 0.0 && w < MOST_WIDTH_M) {
+            return wrong(format!("a half-width of {w} m on the {name}"));
+        }
+        if side * c.curvature[k] * w >= 1.0 {
+            return wrong(format!("the normals cross within the half-width of {w} m on the {name}"));
+        }
+    }
+    let Some(before) = k.checked_sub(1) else { return Ok([0.0; 2]) };
+    let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
+    if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
+        return wrong(format!("the road turns by {turn:.2} rad from the station before, too much for this spacing"));
+    }
+    let turned = c.heading[k] - c.heading[before] - turn;
+    let turned = (turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round()).abs();
+    let off = turned;
+    if off > HEADING_TOLERANCE_RAD * c.spacing_m {
+        return wrong(format!("its heading differs by {off:.4} rad from what the curvatures give"));
+    }
+    let place =
+        Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
+    let at = curve(place, [c.curvature[before], c.curvature[k]], c.spacing_m, c.spacing_m).c;
+    let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
+    if off > PLACE_TOLERANCE_M * c.spacing_m {
+        return wrong(format!("it lies {off:.4} m from where the station before and the curvatures lead"));
+    }
+    // A heading error of x moves the middle of the chord by an eighth of x per metre.
+    Ok([off + 0.125 * c.spacing_m * turned, turned])
+}
+
+pub(crate) fn finite(c: &Corridor, k: usize) -> bool {
+    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
+    values.iter().all(|v| v.is_finite() && v.abs() < 1e8)
+}
