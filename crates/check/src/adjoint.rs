@@ -12,53 +12,6 @@ use crate::tubes::Tubes;
 /// The history is cut where earlier inputs add no more than this, metres (or radians).
 const CUT: f64 = 2e-5;
 
-/// Coefficients of one unit over one step, for the adjoint.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Coefficients {
-    /// Mean ρ/L, and the largest difference from the mean.
-    rate: [f64; 2],
-    /// How much of a kernel is left a step earlier, and what a source at the start and at the end of the step adds to
-    /// it.
-    decay: f64,
-    sources: [f64; 2],
-    /// ρ / (L cos δ), constant over the step.
-    pace: f64,
-    /// Means of cos χ (1+k) and of cos χ k / cos δ, each with the largest difference from the mean.
-    through: [f64; 2],
-    back: [f64; 2],
-    /// 1/cos δ, cos χ (1+k) and cos χ k / cos δ at the end of the step.
-    ends: [f64; 3],
-    most_rho: f64,
-}
-
-impl Coefficients {
-    pub(crate) fn of(link: &super::link::Link, bend: &super::tubes::Bend, h: f64) -> Self {
-        let mean = |[a, b]: [f64; 2]| [0.5 * (a + b), 0.5 * (a - b).abs()];
-        let rho = bend.rho();
-        let through = bend.cos_chi.map(|c| c * (1.0 + link.k));
-        let back = [0, 1].map(|k| bend.cos_chi[k] * link.k * bend.sec[k]);
-        let rate = mean(rho.map(|rho| rho / link.l));
-        let x = rate[0] * h;
-        let decay = (-x).exp();
-        let mean_kernel = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
-        let sources = if x > 1e-3 {
-            [h * (1.0 - mean_kernel) / x, h * (mean_kernel - decay) / x]
-        } else {
-            [h * (0.5 - x / 6.0), h * (0.5 - x / 3.0)]
-        };
-        Self {
-            rate,
-            decay,
-            sources,
-            pace: bend.pace / link.l,
-            through: mean(through),
-            back: mean(back),
-            ends: [bend.sec[1], through[1], back[1]],
-            most_rho: rho[0].max(rho[1]),
-        }
-    }
-}
-
 /// Kernels of `W` outputs over one step: at its start, at its end, and a bound on their second derivatives in between.
 #[derive(Debug, Clone, Copy)]
 struct Kernel<const W: usize> {

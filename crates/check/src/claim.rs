@@ -5,12 +5,13 @@ use std::ops::Range;
 
 use crate::chain::Chain;
 use crate::curve::Place;
+use crate::feet::foot;
 use crate::fit::RoadError;
-use crate::leeway::{Swept, foot};
 use crate::motion::Motion;
 use crate::plane::Cramped;
 use crate::road::Road;
-use crate::search::{Shortfall, Targets};
+use crate::swept::Swept;
+use crate::targets::{Shortfall, Targets};
 use crate::{STEPS, TOLERANCE_M};
 use netcert_base::corridor::Corridor;
 

@@ -7,7 +7,9 @@
 use std::ops::Range;
 
 use crate::UP;
-use crate::leeway::{BETWEEN, Swept, point};
+use crate::allowance::BETWEEN;
+use crate::feet::point;
+use crate::swept::Swept;
 use crate::tubes::Tube;
 
 /// A body point is at most this share of a stretch ahead of its station or behind it.

@@ -26,15 +26,21 @@
 //! within `leeway::CLOSE_M` of the claim are repeated in intervals.
 
 mod adjoint;
+mod allowance;
 mod areas;
+mod cell;
 mod chain;
 mod claim;
 mod coarse;
+mod coefficients;
 mod curve;
 #[cfg(test)]
 mod drawn;
+mod feet;
+mod filter;
 mod fit;
 mod gains;
+mod hinges;
 mod hull;
 mod interval;
 mod leeway;
@@ -45,6 +51,10 @@ mod plane;
 pub mod printed;
 mod road;
 mod search;
+mod second_order;
+mod sharpen;
+mod swept;
+mod targets;
 mod tubes;
 mod vector;
 
@@ -52,7 +62,7 @@ pub use chain::Chain;
 pub use claim::{Finding, Outcome, SpanClaim, Subject, Weight, finding};
 pub use fit::RoadError;
 pub use interval::Interval;
-pub use leeway::Swept;
+pub use swept::Swept;
 
 /// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
 /// into different steps. `claim` applies the tolerance, and nothing else does.

@@ -52,8 +52,9 @@
 use std::ops::Range;
 
 use crate::areas::Boundary;
+use crate::feet::point;
 use crate::hull::{Segment, hull, way};
-use crate::leeway::{Swept, point};
+use crate::swept::Swept;
 use crate::vector::{Point, framed, length};
 use crate::{TOLERANCE_M, UP};
 use netcert_base::watch;

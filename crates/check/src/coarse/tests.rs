@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::STEPS;
+use crate::cell::Cell;
 use crate::claim::{SpanClaim, Subject};
 use crate::drawn::{chain, random, unit};
-use crate::leeway::{Cell, Hint};
+use crate::feet::Hint;
 use netcert_base::corridor::Corridor;
 
 /// A number up to `most` to either side of 0.

@@ -1,0 +1,61 @@
+//! Feet: where the normal of the road through a point meets the road.
+
+use crate::curve::Place;
+use crate::motion::Pose;
+use crate::road::Road;
+use crate::vector::along;
+
+/// Widest gap between two stretches that a foot may fall into, metres.
+const GAP_M: f64 = 0.03;
+
+/// Where a foot is searched from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hint {
+    /// Stations of the road. NaN: nowhere yet.
+    pub(crate) s: f64,
+    /// The road there, if it is known.
+    pub(crate) place: Option<Place>,
+}
+
+impl Hint {
+    pub(crate) const NONE: Hint = Hint { s: f64::NAN, place: None };
+
+    pub(crate) fn at(s: f64) -> Self {
+        Self { s, place: None }
+    }
+}
+
+/// The foot of a point by Newton's method, to 1e-10 m, with its place and the point's lateral place.
+pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+    foot_from(road, x, Hint::at(guess))
+}
+
+/// As [`foot`], from a place that may be known.
+pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, Place, f64)> {
+    let (mut s, mut known) = (guess.s, guess.place);
+    for round in 0..30 {
+        let place = known.take().unwrap_or_else(|| road.place(s));
+        let r = [x[0] - place.c[0], x[1] - place.c[1]];
+        let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
+        // A foot may fall into the gap between two stretches that do not quite meet. The gap grows with the distance if
+        // headings differ.
+        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
+            return Some((s, place, lateral));
+        }
+        s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
+    }
+    None
+}
+
+/// How much farther a point may be from the road than from a normal that passes beside it in a gap between two
+/// stretches, metres.
+pub(crate) fn beside_m(x: [f64; 2], place: &Place) -> f64 {
+    let r = [x[0] - place.c[0], x[1] - place.c[1]];
+    let off = r[0] * place.t[0] + r[1] * place.t[1];
+    off * off / ((r[0] * r[0] + r[1] * r[1]).sqrt() + 1e-9)
+}
+
+/// A body point, `a` ahead of the axle and `b` to its left.
+pub(crate) fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
+    along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
+}
