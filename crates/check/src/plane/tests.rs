@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use super::kept::{TURNS, turned};
 use super::*;
-use crate::STEPS;
 use crate::areas::MOST_VERTICES;
 use crate::chain::Chain;
 use crate::claim::{SpanClaim, Subject, Weight};
 use crate::drawn::{chain, random, unit};
-use crate::hull::to_segment;
+use crate::feet::point;
+use crate::hull::{Segment, hull, to_segment, way};
+use crate::vector::{framed, length};
+use crate::{STEPS, TOLERANCE_M};
 use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 use netcert_base::vehicle::Unit;
 
