@@ -33,6 +33,7 @@ mod chain;
 mod claim;
 mod coarse;
 mod coefficients;
+mod columns;
 mod curve;
 #[cfg(test)]
 mod drawn;
@@ -44,6 +45,7 @@ mod hinges;
 mod hull;
 mod interval;
 mod leeway;
+mod limiting;
 mod link;
 mod motion;
 pub mod plan;
@@ -53,15 +55,18 @@ mod road;
 mod search;
 mod second_order;
 mod sharpen;
+mod spans;
+mod subject;
 mod swept;
 mod targets;
 mod tubes;
 mod vector;
 
 pub use chain::Chain;
-pub use claim::{Finding, Outcome, SpanClaim, Subject, Weight, finding};
+pub use claim::{Finding, Outcome, SpanClaim, Weight, finding};
 pub use fit::RoadError;
 pub use interval::Interval;
+pub use subject::Subject;
 pub use swept::Swept;
 
 /// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road

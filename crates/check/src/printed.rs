@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use crate::STEPS;
-use crate::claim::Subject;
+use crate::subject::Subject;
 use netcert_base::vehicle::Vehicle;
 
 /// Upper bound of 𝒞, metres, because h_Ω is not negative. Edges' values are compared with it. Where an edge ends in a

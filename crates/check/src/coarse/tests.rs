@@ -3,9 +3,10 @@
 use super::*;
 use crate::STEPS;
 use crate::cell::Cell;
-use crate::claim::{SpanClaim, Subject};
+use crate::claim::SpanClaim;
 use crate::drawn::{chain, random, unit};
 use crate::feet::Hint;
+use crate::subject::Subject;
 use netcert_base::corridor::Corridor;
 
 /// A number up to `most` to either side of 0.
