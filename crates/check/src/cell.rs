@@ -6,6 +6,12 @@ use crate::feet::{Hint, beside_m, foot_from, point};
 use crate::motion::Pose;
 use crate::swept::Swept;
 
+/// Nothing is bounded where a body stands more askew to the road than of this cosine, or where normals crowd more than this.
+const LEAST_COSINE: f64 = 0.2;
+const LEAST_NARROW: f64 = 0.1;
+/// A foot this little beyond a station may belong to the stretch before it, stations.
+const BEHIND: f64 = 0.1;
+
 /// A corner of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Corner {
@@ -63,7 +69,7 @@ impl Swept<'_> {
         let tube = self.tubes.get(cell.step, cell.unit)?;
         // Normals diverge on the outside of a bend, where a foot moves no more than its point.
         let narrow = 1.0 - (place.curvature * lateral).max(0.0);
-        if !(cos > 0.2 && narrow > 0.1) {
+        if !(cos > LEAST_COSINE && narrow > LEAST_NARROW) {
             return None;
         }
         let at = a - b * sin / cos;
@@ -75,11 +81,31 @@ impl Swept<'_> {
             + 0.5 * place.curvature.abs() / narrow * slide * slide
             + (width - self.road.narrowest(cell.side, s - reach, s + reach));
         let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
-        // Second derivative of the lateral place, per square metre of the coupling's path.
+        let dev = dev + self.road.slack(s).max(self.road.slack(s - BEHIND)) + beside_m(x, &place);
+        // A bound without end times nothing is no number.
+        if dev.is_nan() {
+            return None;
+        }
+        let bend = self.bend(cell, [a, b], [sin, cos], (s, &place, lateral), slope);
+        Some(Corner { s, place, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
+    }
+
+    /// |Second derivative| of a corner's leeway, per square metre of the coupling's path. The corner is `a` ahead of its axle and
+    /// `b` to the left; its foot is at `s`.
+    fn bend(
+        &self,
+        cell: &Cell,
+        [a, b]: [f64; 2],
+        [sin, cos]: [f64; 2],
+        (s, place, lateral): (f64, &Place, f64),
+        slope: f64,
+    ) -> f64 {
+        let l = self.chain.links[cell.unit].l;
+        let narrow = 1.0 - (place.curvature * lateral).max(0.0);
         let swing = self.motion.swing(cell.step, cell.unit);
         let q = 1.0 + swing.before * swing.before;
         let (sd, cd) = (2.0 * swing.before / q, (2.0 - q) / q);
-        let (v, w, dv, dw) = (cd, sd / link.l, sd * sd / link.l, -sd * cd / (link.l * link.l));
+        let (v, w, dv, dw) = (cd, sd / l, sd * sd / l, -sd * cd / (l * l));
         let along_road = (v - b * w) * cos - a * w * sin;
         let across = (dv - a * w * w - b * dw) * sin + (v * w + a * dw - b * w * w) * cos;
         let (_, rate) = self.road.sharpest(cell.side, s, s);
@@ -87,14 +113,8 @@ impl Swept<'_> {
             + 2.0 * place.curvature.abs() * (sin.abs() + (a * w).abs())
             + rate * lateral.abs())
             / (narrow * narrow);
-        let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
-            + slope.abs() * feet;
-        let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1)) + beside_m(x, &place);
-        // A bound without end times nothing is no number.
-        if dev.is_nan() {
-            return None;
-        }
-        Some(Corner { s, place, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
+        (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
+            + slope.abs() * feet
     }
 
     /// Nominal leeway of a body point as it passes the normal at `s` (stations of the road), with exact steering. If it

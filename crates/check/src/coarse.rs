@@ -7,9 +7,10 @@
 use std::ops::Range;
 
 use crate::UP;
-use crate::allowance::BETWEEN;
+use crate::allowance::{BEND_ROUNDING, BETWEEN, JUMPS_PART, SIN_SPARE};
 use crate::feet::point;
-use crate::swept::Swept;
+use crate::road::Section;
+use crate::swept::{ABOUT, Swept};
 use crate::tubes::Tube;
 
 /// A body point is at most this share of a stretch ahead of its station or behind it.
@@ -22,6 +23,15 @@ const MOST: f64 = 0.5;
 /// Greatest heading difference at a station, and greatest sum of the angles at which chords meet, radians.
 const MOST_JUMP_RAD: f64 = 0.05;
 const MOST_KINKS_RAD: f64 = 0.5;
+/// Between the ends of a body of length G the lateral place is greater by κG²/4 at most (proof, section 7).
+const SAGITTA: f64 = 0.25;
+/// A half-width lies below its chord by at most this part of the growth of its slope (`Road::dip`).
+const DIP_PART: f64 = 0.25;
+/// Factors for what is not exact: the sum of gains, and chords that meet at an arc's angle.
+const RISE_SPARE: f64 = 1.001;
+const KINK_SPARE: f64 = 1.05;
+/// A foot this many stations before the corridor is before it for all of a slab.
+const BEFORE: f64 = 1.5;
 /// Greatest tangent of half the angle between a unit and its coupling's path.
 const MOST_HALF: f64 = 0.25;
 
@@ -99,34 +109,47 @@ impl Swept<'_> {
 
     /// Whether a foot is before the corridor, where the road is straight. No claim reaches so far.
     pub(crate) fn outside(&self, spot: &Spot) -> bool {
-        spot.rough(self.road.spacing) + 1.5 < self.road.lead as f64
+        spot.rough(self.road.spacing) + BEFORE < self.road.lead as f64
     }
 
     /// A lower bound of the leeway in a slab, from its corners. `spots` are those at its start and at its end in time,
     /// rear first. `None` where the road bends too much for it.
     pub(crate) fn coarse(&self, slab: &Slab, spots: &[[Spot; 2]; 2]) -> Option<Coarse> {
         let all = spots.as_flattened();
-        let most = |size: fn(&Spot) -> f64| all.iter().map(size).fold(0.0, f64::max);
         let first = all.iter().fold(usize::MAX, |least, spot| least.min(spot.station)).checked_sub(1)?;
         let last = all.iter().fold(0, |most, spot| most.max(spot.station)) + 1;
         let road = self.road.section(slab.side, first, last)?;
-        let tube = self.greatest_tube(slab)?;
+        let (tube, pace) = (self.greatest_tube(slab)?, self.pace(slab)?);
+        let reach = self.reach(slab, all, &road, &tube, &pace)?;
+        let least = self.lowest_corner(slab, all, &road, &tube, &reach);
+        let feet = all.iter().map(|spot| spot.rough(self.road.spacing));
+        let [from, to] = feet.fold([f64::INFINITY, 0.0], |[from, to], s| [s.min(from), s.max(to)]);
+        let stray = reach.stray / self.road.spacing;
+        let [from, to] = [from - stray, to + stray];
+        let body = self.along_body(slab, &road, &tube, &reach, to - from);
+        let time = self.in_time(slab, &road, &pace, &reach);
+        Some(Coarse { bound: least - body - time, body, stations: [from - ABOUT, to + ABOUT] })
+    }
+
+    /// How far a slab reaches in the road's frame. `None` where the road bends too much, or a foot may be farther than a
+    /// stretch from where its spot puts it.
+    fn reach(&self, slab: &Slab, all: &[Spot], road: &Section, tube: &Tube, pace: &Pace) -> Option<Reach> {
+        let most = |size: fn(&Spot) -> f64| all.iter().map(size).fold(0.0, f64::max);
         let (spacing, link) = (self.road.spacing, &self.chain.links[slab.unit]);
         let front = all[0].a.abs().max(all[1].a.abs());
-        let pace = self.pace(slab)?;
         let bent = road.bent[0].max(road.bent[1]);
         let off = most(|spot| spot.off.abs());
         // Within the slab a point is at most half of the way from a corner's time.
-        let (reach, length) = (front + link.half_width, all[1].a - all[0].a);
-        let turned = 0.5 * pace.travel * (pace.w + 2.0 * bent * (1.0 + reach * pace.w));
+        let (arm, length) = (front + link.half_width, all[1].a - all[0].a);
+        let turned = 0.5 * pace.travel * (pace.w + 2.0 * bent * (1.0 + arm * pace.w));
         // Within a body the angle is greater than at both ends only where the road bends to both sides.
         let between = road.bent[0].min(road.bent[1]) * length;
         let sin = most(|spot| spot.sin.abs()) + 2.0 * bent * off + road.jump + turned + between;
-        let drift = 0.5 * pace.travel * (sin + reach * pace.w);
+        let drift = 0.5 * pace.travel * (sin + arm * pace.w);
         // From the station to the foot the lateral place changes by at most off²·κ/2/(1 − κ·lateral). That is below off²·κ
         // while κ·lateral is below a half.
         // Within a body it is greater by the sagitta.
-        let lateral = most(|spot| spot.lateral.abs()) + (off * off + 0.25 * length * length) * bent + drift;
+        let lateral = most(|spot| spot.lateral.abs()) + (off * off + SAGITTA * length * length) * bent + drift;
         // The square allows for the cosine between a foot and its station.
         let narrow = 1.0 - bent * lateral - (bent * spacing) * (bent * spacing);
         if !(narrow > 1.0 - MOST && sin < MOST && road.jump < MOST_JUMP_RAD) {
@@ -135,15 +158,21 @@ impl Swept<'_> {
         let slide = link.half_width * tube.a + sin * (tube.y + front * tube.a);
         // Behind a station that the stretch before meets askew, a foot is farther along.
         let gap = road.jump * (lateral + 1.0) + road.slack;
-        // Metres along the road by which a foot may be from where its spot puts it.
         let stray = (off + gap) * (1.0 / narrow - 1.0) + gap + slide / narrow;
         if (off + gap + slide) / narrow > spacing {
             return None;
         }
+        Some(Reach { front, arm, length, bent, sin, lateral, narrow, slide, gap, stray })
+    }
+
+    /// The least leeway of a slab's corners, each with what may lie between its station and its foot.
+    fn lowest_corner(&self, slab: &Slab, all: &[Spot], road: &Section, tube: &Tube, reach: &Reach) -> f64 {
+        let (spacing, link) = (self.road.spacing, &self.chain.links[slab.unit]);
+        let Reach { front, bent, sin, narrow, slide, gap, stray, .. } = *reach;
         let tan = sin / (1.0 - sin * sin).sqrt();
         let heading = self.chain.gains.units[slab.unit].heading.at(self.tubes.tolerance_m);
         // How much the first-order bound grows per metre of body.
-        let rise = (heading + (tube.extra + tube.extra_coupling) / link.l) * 1.001;
+        let rise = (heading + (tube.extra + tube.extra_coupling) / link.l) * RISE_SPARE;
         let shared = front * tube.r1 / link.l
             + 0.5 * sin * front * tube.a * tube.a
             + 0.5 * bent / narrow * slide * slide
@@ -164,28 +193,35 @@ impl Swept<'_> {
             let askew = if behind { road.slack + road.jump * way } else { 0.0 };
             least = least.min(width - sign * spot.lateral - (aside + road.slack + askew + (dev + shared) * UP));
         }
-        let feet = all.iter().map(|spot| spot.rough(spacing));
-        let [from, to] = feet.fold([f64::INFINITY, 0.0], |[from, to], s| [s.min(from), s.max(to)]);
-        let [from, to] = [from - stray / spacing, to + stray / spacing];
-        // Along the body, as `allowances` of exact corners.
+        least
+    }
+
+    /// What the body between its ends may lack, as `allowances` of exact corners. Its feet spread over so many stations.
+    fn along_body(&self, slab: &Slab, road: &Section, tube: &Tube, reach: &Reach, spread: f64) -> f64 {
+        let Reach { length, bent, sin, lateral, narrow, .. } = *reach;
         let crowded = narrow * narrow;
         let curve = road.bent[slab.side] / narrow
             + road.steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
-            + tube.a * link.half_width * (2.0 * bent * bent * (sin + 0.05) + road.rate);
-        let unfit = road.slacks + road.jumps * (0.25 * length + road.steepest * lateral);
-        let body = curve * BETWEEN * length * length / 8.0 + 0.25 * road.growth * (to - from) + unfit;
-        // In time, as `corner` and `allowances`: |second derivative| per square metre of the coupling's path, and where
-        // chords meet, the jumps of the first derivative and of the place.
+            + tube.a * self.chain.links[slab.unit].half_width * (2.0 * bent * bent * (sin + SIN_SPARE) + road.rate);
+        let unfit = road.slacks + road.jumps * (JUMPS_PART * length + road.steepest * lateral);
+        curve * BETWEEN * length * length / 8.0 + DIP_PART * road.growth * spread + unfit
+    }
+
+    /// What may be lacking between a slab's start and its end, as `corner` and `allowances`: |second derivative| per square
+    /// metre of the coupling's path, and where chords meet, the jumps of the first derivative and of the place.
+    fn in_time(&self, slab: &Slab, road: &Section, pace: &Pace, reach: &Reach) -> f64 {
+        let link = &self.chain.links[slab.unit];
+        let Reach { front, arm, bent, sin, lateral, narrow, .. } = *reach;
+        let crowded = narrow * narrow;
         let (w, dw, b) = (pace.w, pace.w / link.l, link.half_width);
-        let along_road = 1.0 + reach * w;
+        let along_road = 1.0 + arm * w;
         let across = (w * w * (link.l + front) + b * dw) * sin + w + front * dw + b * w * w;
         let foot = (w * (1.0 + front * w) + 2.0 * bent * (sin + front * w) + road.rate * lateral) / crowded;
         let bend = across + bent * along_road * along_road / narrow + road.steepest * foot;
-        let kink = pace.kinks * (link.l * w + reach / link.l) * (1.0 + road.steepest / narrow);
-        let time = (bend * BETWEEN + 1e-5) * pace.travel * pace.travel / 8.0
-            + 0.25 * pace.travel * (kink + road.jumps)
-            + pace.led * (reach + link.l);
-        Some(Coarse { bound: least - body - time, body, stations: [from - 0.01, to + 0.01] })
+        let kink = pace.kinks * (link.l * w + arm / link.l) * (1.0 + road.steepest / narrow);
+        (bend * BETWEEN + BEND_ROUNDING) * pace.travel * pace.travel / 8.0
+            + JUMPS_PART * pace.travel * (kink + road.jumps)
+            + pace.led * (arm + link.l)
     }
 
     /// The greatest bounds in a slab's steps. The bulge of the coupling's path counts as a part of `extra_coupling`.
@@ -216,7 +252,7 @@ impl Swept<'_> {
             let swing = self.motion.swing(step, slab.unit);
             pace.travel += swing.len;
             half = half.max(swing.before.abs());
-            let (kink, share) = (1.05 * swing.curvature * swing.len, swing.len / link.l);
+            let (kink, share) = (KINK_SPARE * swing.curvature * swing.len, swing.len / link.l);
             pace.led += kink * share * share / 12.0;
             if step > first {
                 pace.kinks += kink;
@@ -225,6 +261,27 @@ impl Swept<'_> {
         pace.w = 2.0 * half / (1.0 + half * half) / link.l;
         (half < MOST_HALF && pace.kinks < MOST_KINKS_RAD).then_some(pace)
     }
+}
+
+/// How far a slab reaches in the road's frame: the greatest values of all of its places, metres unless said otherwise.
+struct Reach {
+    /// From the axle ahead or behind, and with half the width.
+    front: f64,
+    arm: f64,
+    /// From the rear end to the front end.
+    length: f64,
+    /// Curvature of the road, 1/m.
+    bent: f64,
+    /// Sine of the angle to the road.
+    sin: f64,
+    lateral: f64,
+    /// The least of 1 − κ·lateral.
+    narrow: f64,
+    /// How far a foot may slide as the body deviates, and what stations that meet askew add.
+    slide: f64,
+    gap: f64,
+    /// The way along the road by which a foot may be from where its spot puts it.
+    stray: f64,
 }
 
 /// How a unit moves in some steps.

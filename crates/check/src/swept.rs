@@ -18,6 +18,10 @@ pub(crate) const KNOT_M: f64 = 0.25;
 /// A foot is at most this share of the vehicle's length, plus these metres, from its place on a straight.
 const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
+/// Stations by which a range of feet is widened, since feet are not exact.
+pub(crate) const ABOUT: f64 = 0.01;
+/// In a bend the rear lags a little farther behind than on a straight; `steps` goes on from there.
+const LAG: f64 = 1.05;
 /// Length of the history in which second-order terms use the adjoint's bounds, in vehicle lengths.
 pub(crate) const HISTORY_LENGTHS: f64 = 1.5;
 
@@ -117,7 +121,7 @@ impl<'a> Swept<'a> {
         let (ahead, behind) = self.chain.reach_m();
         let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
         let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
-        let mut to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        let mut to = (self.road.lead + stretches.end + 1 + stations(LAG * behind)) * STEPS;
         // In a bend the rear may lag farther behind than on a straight.
         while to < self.motion.steps() && self.rear(to).is_none_or(|s| s <= (self.road.lead + stretches.end) as f64) {
             to += STEPS;
