@@ -5,9 +5,9 @@
 //! remainder is bounded, multiplied by a bound on what it acts on, and added. The kernels themselves therefore need not
 //! be exact.
 
-use crate::UP;
 use crate::chain::Chain;
 use crate::tubes::Tubes;
+use crate::{HISTORY_UP, STEPS, UP};
 
 /// The history is cut where earlier inputs add no more than this, metres (or radians).
 const CUT: f64 = 2e-5;
@@ -58,14 +58,14 @@ pub(crate) fn bounds<const W: usize>(
     for step in (tubes.first..=last).rev() {
         back_one_step(chain, tubes, step, &mut mu, h, &mut total)?;
         // μ now stands at the start of `step`.
-        if step % 4 == 0 || step == tubes.first {
+        if step % STEPS == 0 || step == tubes.first {
             let mut rest = [0.0; W];
             for (j, mu) in mu.iter().enumerate() {
                 let y = tubes.get(step, j)?.y;
                 rest.iter_mut().zip(mu).for_each(|(rest, mu)| *rest += mu.abs() * y);
             }
             if step == tubes.first || rest.iter().all(|rest| *rest < CUT) {
-                return Some(std::array::from_fn(|w| (total[w] + rest[w]) * (1.0 + 1e-10)));
+                return Some(std::array::from_fn(|w| (total[w] + rest[w]) * HISTORY_UP));
             }
         }
     }

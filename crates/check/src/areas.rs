@@ -3,16 +3,17 @@
 use std::ops::Range;
 
 use crate::STEPS;
-use crate::fit::RoadError;
+use crate::fit::{FARTHEST_M, RoadError};
 use crate::hull::{Segment, bounds};
 use crate::vector::Point;
 use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
-/// Largest coordinates (metres), and most vertices of one area.
-const FARTHEST_M: f64 = 1e8;
+/// Most vertices of one area.
 pub(crate) const MOST_VERTICES: usize = 100_000;
 /// Strips into which a boundary is sorted. More hardly help, and a boundary of long segments is in all of them.
 const STRIPS: usize = 64;
+/// Least height of a strip, metres: a boundary may be one line from west to east.
+const LEAST_STRIP_M: f64 = 1e-3;
 
 /// The areas of a corridor.
 #[derive(Debug, Clone, Default)]
@@ -88,7 +89,7 @@ impl Boundary {
         let segments: Vec<Segment> = area.segments().map(|segment| segment.map(own)).collect();
         let ends = |y: fn(f64, f64) -> f64, from: f64| segments.iter().fold(from, |most, [a, _]| y(most, a[1]));
         let (low, high) = (ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY));
-        let height = ((high - low) / STRIPS as f64).max(1e-3);
+        let height = ((high - low) / STRIPS as f64).max(LEAST_STRIP_M);
         let mut boundary = Self { segments: Vec::new(), strips: vec![Vec::new(); STRIPS], low, height };
         for (k, [a, b]) in segments.iter().enumerate() {
             for strip in boundary.strips_of(a[1].min(b[1]), a[1].max(b[1])) {

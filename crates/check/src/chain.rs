@@ -8,6 +8,8 @@ use netcert_base::vehicle::Vehicle;
 const LEFT_M: f64 = 1e-4;
 /// Least cos δ for which offsets fade as fast as is assumed.
 const LEAST_COSINE: f64 = 0.8;
+/// Number of rates tried. Any of them gives a bound, and the best counts.
+const RATES: u32 = 100;
 
 /// A vehicle with its straight gains.
 #[derive(Debug, Clone)]
@@ -66,8 +68,8 @@ impl Chain {
 fn faded(links: &[Link], left_m: f64) -> f64 {
     let longest = links.iter().map(|link| link.l).fold(0.0, f64::max);
     let mut best = f64::INFINITY;
-    for share in 1..100 {
-        let rate = f64::from(share) / (100.0 * longest);
+    for share in 1..RATES {
+        let rate = f64::from(share) / (f64::from(RATES) * longest);
         let (mut e, mut farthest) = (0.0, 0.0_f64);
         for Link { l, k, front, rear, .. } in links {
             let y = f64::max(2.0 * l + e, e / (1.0 - rate * l));

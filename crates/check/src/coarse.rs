@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::UP;
 use crate::allowance::{BEND_ROUNDING, BETWEEN, JUMPS_PART, SIN_SPARE};
 use crate::feet::point;
-use crate::road::Section;
+use crate::road::{DIP_PART, Section};
 use crate::swept::{ABOUT, Swept};
 use crate::tubes::Tube;
 
@@ -25,8 +25,6 @@ const MOST_JUMP_RAD: f64 = 0.05;
 const MOST_KINKS_RAD: f64 = 0.5;
 /// Between the ends of a body of length G the lateral place is greater by κG²/4 at most (proof, section 7).
 const SAGITTA: f64 = 0.25;
-/// A half-width lies below its chord by at most this part of the growth of its slope (`Road::dip`).
-const DIP_PART: f64 = 0.25;
 /// Factors for what is not exact: the sum of gains, and chords that meet at an arc's angle.
 const RISE_SPARE: f64 = 1.001;
 const KINK_SPARE: f64 = 1.05;

@@ -3,6 +3,10 @@
 use crate::link::Link;
 use crate::motion::Swing;
 
+/// Below these shares of a unit's length, quotients of small differences give way to their series.
+const KERNEL_SERIES: f64 = 1e-4;
+const SOURCE_SERIES: f64 = 1e-3;
+
 /// Coefficients of one unit at the start and the end of one step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bend {
@@ -69,8 +73,8 @@ impl Coefficients {
         let rate = mean(rho.map(|rho| rho / link.l));
         let x = rate[0] * h;
         let decay = (-x).exp();
-        let mean_kernel = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
-        let sources = if x > 1e-3 {
+        let mean_kernel = if x > KERNEL_SERIES { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
+        let sources = if x > SOURCE_SERIES {
             [h * (1.0 - mean_kernel) / x, h * (mean_kernel - decay) / x]
         } else {
             [h * (0.5 - x / 6.0), h * (0.5 - x / 3.0)]

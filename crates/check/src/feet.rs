@@ -7,6 +7,15 @@ use crate::vector::along;
 
 /// Widest gap between two stretches that a foot may fall into, metres.
 const GAP_M: f64 = 0.03;
+/// A foot is found when its normal passes the point this closely, metres.
+const FOUND_M: f64 = 1e-10;
+/// Most rounds of Newton's method, and the longest move of one, metres. A longer one may end on another leg of the road.
+const ROUNDS: usize = 30;
+const MOST_MOVE_M: f64 = 5.0;
+/// Least of 1 − κ·lateral in a move. The method goes on with less, but slowly.
+const LEAST_NARROW: f64 = 0.1;
+/// No point is so close to the road that matters, metres; it only keeps a quotient finite.
+const TINY_M: f64 = 1e-9;
 
 /// Where a foot is searched from.
 #[derive(Debug, Clone, Copy)]
@@ -25,7 +34,7 @@ impl Hint {
     }
 }
 
-/// The foot of a point by Newton's method, to 1e-10 m, with its place and the point's lateral place.
+/// The foot of a point by Newton's method, with its place and the point's lateral place.
 pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
     foot_from(road, x, Hint::at(guess))
 }
@@ -33,16 +42,16 @@ pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, 
 /// As [`foot`], from a place that may be known.
 pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, Place, f64)> {
     let (mut s, mut known) = (guess.s, guess.place);
-    for round in 0..30 {
+    for round in 0..ROUNDS {
         let place = known.take().unwrap_or_else(|| road.place(s));
         let r = [x[0] - place.c[0], x[1] - place.c[1]];
         let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
         // A foot may fall into the gap between two stretches that do not quite meet. The gap grows with the distance if
         // headings differ.
-        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
+        if off.abs() < FOUND_M || round == ROUNDS - 1 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
             return Some((s, place, lateral));
         }
-        s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
+        s += off.clamp(-MOST_MOVE_M, MOST_MOVE_M) / (1.0 - place.curvature * lateral).max(LEAST_NARROW) / road.spacing;
     }
     None
 }
@@ -52,7 +61,7 @@ pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, P
 pub(crate) fn beside_m(x: [f64; 2], place: &Place) -> f64 {
     let r = [x[0] - place.c[0], x[1] - place.c[1]];
     let off = r[0] * place.t[0] + r[1] * place.t[1];
-    off * off / ((r[0] * r[0] + r[1] * r[1]).sqrt() + 1e-9)
+    off * off / ((r[0] * r[0] + r[1] * r[1]).sqrt() + TINY_M)
 }
 
 /// A body point, `a` ahead of the axle and `b` to its left.

@@ -11,6 +11,10 @@ const HEADING_TOLERANCE_RAD: f64 = 0.04;
 const MOST_TURN_RAD: f64 = 0.5;
 /// Bound of half-widths that tags and users can mean, metres.
 const MOST_WIDTH_M: f64 = 1e4;
+/// Largest coordinates, metres.
+pub(crate) const FARTHEST_M: f64 = 1e8;
+/// A heading error of x moves the middle of the chord by an eighth of x per metre.
+const TO_MIDDLE: f64 = 0.125;
 
 /// Why stations do not form a corridor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,11 +60,10 @@ pub(crate) fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadErro
     if off > PLACE_TOLERANCE_M * c.spacing_m {
         return wrong(format!("it lies {off:.4} m from where the station before and the curvatures lead"));
     }
-    // A heading error of x moves the middle of the chord by an eighth of x per metre.
-    Ok([off + 0.125 * c.spacing_m * turned, turned])
+    Ok([off + TO_MIDDLE * c.spacing_m * turned, turned])
 }
 
 pub(crate) fn finite(c: &Corridor, k: usize) -> bool {
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
-    values.iter().all(|v| v.is_finite() && v.abs() < 1e8)
+    values.iter().all(|v| v.is_finite() && v.abs() < FARTHEST_M)
 }

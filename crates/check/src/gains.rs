@@ -5,15 +5,21 @@
 //! the same recursion with absolute values, and so does the integral after the last step. Both are added, so the result
 //! is never too small.
 
-use crate::UP;
 use crate::interval::Interval;
 use crate::link::Link;
+use crate::{HISTORY_UP, UP};
 
 /// Largest distance between the points of a body with stored gains, metres. Gains are convex, so linear interpolation
 /// between the points is never too small. At 0.25 a kink between two points cost a millimetre.
 const KNOT_M: f64 = 0.0625;
 /// Share of a response's integral at which it is no longer followed.
 const REST: f64 = 1e-6;
+/// A step is at most this part of the shortest unit and this long (metres), but no shorter than this part of the vehicle.
+const STEPS_A_UNIT: f64 = 40.0;
+const LONGEST_STEP_M: f64 = 0.05;
+const MOST_STEPS: f64 = 4000.0;
+/// Most steps of a response. What is left then counts as its rest.
+const MOST_NODES: usize = 400_000;
 
 /// Gain from the steer axle's tolerance (per metre of ε), and from all slips at their bounds, metres or radians.
 #[derive(Debug, Clone, Copy, Default)]
@@ -127,7 +133,7 @@ impl Step {
         let sum: f64 = links.iter().map(|link| link.l).sum();
         let least = links.iter().fold(f64::INFINITY, |least, link| least.min(link.l));
         // Short units need short steps, but a long vehicle with one short unit must still finish.
-        let h = (least / 40.0).clamp(sum / 4000.0, 0.05_f64.max(sum / 4000.0));
+        let h = (least / STEPS_A_UNIT).clamp(sum / MOST_STEPS, f64::max(LONGEST_STEP_M, sum / MOST_STEPS));
         Self { h, exponential: exponential(&rates(links), h) }
     }
 }
@@ -210,7 +216,7 @@ impl Response {
             let rest = response.rest.iter().map(|r| r[0].max(r[1])).fold(0.0, f64::max);
             // The integrals of a pulse are of the order of its height times a length.
             let goes_on = rest > REST * first;
-            if !goes_on || response.nodes[0].len() > 400_000 {
+            if !goes_on || response.nodes[0].len() > MOST_NODES {
                 return response;
             }
             let row = |row: &Vec<Interval>| row.iter().zip(&y).fold(Interval::ZERO, |s, (&a, &y)| s + a * y);
@@ -256,8 +262,8 @@ impl Response {
         let sum: f64 = nodes.iter().map(size).sum();
         let bend = wy * self.bend[unit][0] + wa.abs() * self.bend[unit][1];
         let rest = wy * self.rest[unit][0] + wa.abs() * self.rest[unit][1];
-        // 1e-10 covers rounding of the sums and of wy·y + wα·α, relative to terms that decay by tens of orders.
-        (self.h * (sum - 0.5 * ends) + self.h.powi(3) / 12.0 * bend + rest) * (1.0 + 1e-10)
+        // The factor covers rounding of the sums and of wy·y + wα·α.
+        (self.h * (sum - 0.5 * ends) + self.h.powi(3) / 12.0 * bend + rest) * HISTORY_UP
     }
 
     /// Adds this response's share to all gains, with slips at their bounds.

@@ -8,6 +8,9 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// Tangents of smaller angles are finite. At π/2 the tangent jumps to −∞.
+const MOST_TANGENT_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-7;
+
 /// All numbers from `lo` to `hi`, both included. Never empty. A NaN end means that nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
@@ -107,9 +110,7 @@ impl Interval {
     /// Tangent, for angles below a quarter turn.
     #[must_use]
     pub fn tan(self) -> Self {
-        // The tangent jumps to −∞ at π/2.
-        let most = std::f64::consts::FRAC_PI_2 - 1e-7;
-        if self.lo <= -most || self.hi >= most {
+        if self.lo <= -MOST_TANGENT_RAD || self.hi >= MOST_TANGENT_RAD {
             return Self::ALL;
         }
         Self { lo: down(core_math::tan(self.lo)), hi: up(core_math::tan(self.hi)) }

@@ -35,6 +35,8 @@ const SHARP_M: f64 = 1.0;
 const FOOTLESS_HALVINGS: u32 = 5;
 const FOOTLESS_M: f64 = 6.0;
 const NEAR_M: f64 = 0.1;
+/// Least square of a cosine in a quotient. A corner has a greater one (`cell`).
+const LEAST_SQUARE: f64 = 0.01;
 /// No body is so short, metres; it only keeps a quotient finite.
 const TINY_M: f64 = 1e-9;
 
@@ -178,7 +180,7 @@ impl Swept<'_> {
     /// The knots that a cell's bounds rest on.
     fn knots(&self, cell: &Cell, all: &[Corner; 4]) -> Range<usize> {
         let link = &self.chain.links[cell.unit];
-        let slide = all.iter().map(|c| link.half_width * c.sin.abs() / (1.0 - c.sin * c.sin).max(0.01).sqrt());
+        let slide = all.iter().map(|c| link.half_width * c.sin.abs() / (1.0 - c.sin * c.sin).max(LEAST_SQUARE).sqrt());
         let slide = slide.fold(0.0, f64::max);
         Knots::new(link, KNOT_M).about([cell.a[0] - slide, cell.a[1] + slide])
     }

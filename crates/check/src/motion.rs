@@ -12,6 +12,14 @@ use crate::vector::{along, cross, length};
 
 /// Deviation added for rounding of the couplings' places, metres. Coordinates count from the corridor's first station.
 pub(crate) const DEFECT_M: f64 = 1e-8;
+/// What `led` leaves of a chord's effect on a unit, as parts of the bulge: a constant, and a part per length of the unit
+/// (proof, section 2).
+const LEFT: f64 = 0.03;
+const LEFT_A_LENGTH: f64 = 0.2;
+/// A chord shorter than this has no direction, metres.
+const STANDING_M: f64 = 1e-6;
+/// Largest tangent of half an angle that is followed. Beyond a quarter turn, where it is 1, nothing is bounded.
+const MOST_HALF: f64 = 9.0;
 
 /// The pose of a unit.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +54,7 @@ impl Swing {
 
     /// Deviation of the coupling, metres, that counts as much as what `led` leaves of the chord's effect on the unit.
     pub(crate) fn rest(&self, link: &Link) -> f64 {
-        self.bulge * (0.03 + 0.2 * self.len / link.l).min(1.0) + DEFECT_M
+        self.bulge * (LEFT + LEFT_A_LENGTH * self.len / link.l).min(1.0) + DEFECT_M
     }
 
     /// The pose after `share` of the step.
@@ -97,10 +105,10 @@ impl Motion {
             let Pose { p, u } = self.poses[first + i];
             let chord = [to[0] - from[0], to[1] - from[1]];
             let len = length(chord);
-            let c = if len > 1e-6 { [chord[0] / len, chord[1] / len] } else { u };
+            let c = if len > STANDING_M { [chord[0] / len, chord[1] / len] } else { u };
             let (sin, cos) = (u[0] * c[1] - u[1] * c[0], u[0] * c[0] + u[1] * c[1]);
             // Nothing is bounded beyond a quarter turn. The motion continues for the road behind it.
-            let before = (sin / (1.0 + cos)).clamp(-9.0, 9.0);
+            let before = (sin / (1.0 + cos)).clamp(-MOST_HALF, MOST_HALF);
             if !(len.is_finite() && before.is_finite()) {
                 return None;
             }
@@ -125,7 +133,7 @@ impl Motion {
             let before = k.checked_sub(self.units).map_or(0.0, |b| turn(&self.swings[b], &own));
             let after = self.swings.get(k + self.units).map_or(0.0, |a| turn(&own, a));
             let swing = &mut self.swings[k];
-            swing.curvature = before.max(after) / own.len.max(1e-6);
+            swing.curvature = before.max(after) / own.len.max(STANDING_M);
             swing.bulge = swing.curvature * own.len * own.len / 8.0 + DEFECT_M;
         }
     }

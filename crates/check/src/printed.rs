@@ -12,6 +12,9 @@ use crate::STEPS;
 use crate::subject::Subject;
 use netcert_base::vehicle::Vehicle;
 
+/// In a bend the last axle lags a little farther behind than on a straight.
+const LAG: f64 = 1.1;
+
 /// Upper bound of 𝒞, metres, because h_Ω is not negative. Edges' values are compared with it. Where an edge ends in a
 /// corner, rounding decides which feet lie on the edge, so an exact comparison is not possible.
 pub fn most_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -> f64 {
@@ -34,7 +37,7 @@ pub fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -
     let mut off: f64 = 0.0;
     if let Some(motion) = &subject.motion {
         let (_, behind) = subject.chain.reach_m();
-        let last_node = (own.end + (1.1 * behind / road.spacing) as usize + 2) * STEPS;
+        let last_node = (own.end + (LAG * behind / road.spacing) as usize + 2) * STEPS;
         let mut guess = own.start as f64 - behind / road.spacing;
         for node in own.start * STEPS..=last_node.min(motion.steps()) {
             let p = motion.pose(node, last).p;

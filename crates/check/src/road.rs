@@ -11,6 +11,14 @@ use netcert_base::corridor::Corridor;
 
 /// Roads of less curvature are straight, 1/m.
 const BENT: f64 = 1e-3;
+/// Spacings of stations that are taken, metres. They bound the number of stations of a road.
+const SPACINGS_M: std::ops::RangeInclusive<f64> = 0.01..=200.0;
+/// Least length of the course's direction, which is 1 but for what stations are off.
+const LEAST_LENGTH: f64 = 0.1;
+/// A half-width lies below its chord by at most this part of the growth of its slope, times the length.
+pub(crate) const DIP_PART: f64 = 0.25;
+/// Rounding of the sums of that growth, metres a station.
+const ROUNDING: f64 = 1e-9;
 
 /// The road between some stations.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +76,7 @@ impl Road {
             return Err(RoadError { station: 0, problem: format!("{n} stations, or columns of unequal length") });
         }
         let spacing = corridor.spacing_m;
-        if !(0.01..=200.0).contains(&spacing) {
+        if !SPACINGS_M.contains(&spacing) {
             return Err(RoadError { station: 0, problem: format!("a spacing of {spacing} m") });
         }
         let (mut slack, mut jumps) = (vec![0.0; n], vec![0.0; n]);
@@ -171,7 +179,7 @@ impl Road {
             [0, 1].map(|i| from[i] + by * (next.c[i] - end.c[i]) + bend * aside[i])
         };
         let direction = met(t, rate, bending);
-        let length = length(direction).max(0.1);
+        let length = length(direction).max(LEAST_LENGTH);
         (met(c, moved, bent), direction.map(|part| part / length))
     }
 
@@ -197,7 +205,7 @@ impl Road {
     pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
         let first = ((from - reach).max(0.0) as usize + 1).min(self.len());
         let end = up(to + reach).min(self.len() - 1);
-        0.25 * self.grown(side, first, end.max(first)) * (to - from)
+        DIP_PART * self.grown(side, first, end.max(first)) * (to - from)
     }
 
     /// By how much the slope of the half-width grows at a station, metres a station.
@@ -209,7 +217,7 @@ impl Road {
     /// By how much the slope of the half-width grows at stations `first..end`, metres a station. The sums are rounded.
     fn grown(&self, side: usize, first: usize, end: usize) -> f64 {
         let before = |k: usize| self.growth[k.min(self.len() - 1)][side];
-        before(end) - before(first) + 1e-9
+        before(end) - before(first) + ROUNDING
     }
 
     /// The half-widths at a station and at its neighbours. Beyond both ends they do not change.

@@ -8,12 +8,16 @@ use crate::swept::{HISTORY_LENGTHS, KNOT_M, Swept};
 
 /// Number of outputs that one run of the adjoint carries.
 const ABREAST: usize = 4;
+/// The adjoint does not run where the filter adds less than this to the straight bounds, metres. It would gain no more.
+const WORTH_M: f64 = 2e-4;
+/// For the second order of later steps it takes this much.
+const TIGHTEN_M: f64 = 5e-3;
 
 impl Swept<'_> {
     /// Whether the adjoint is allowed and may improve on the filter.
     pub(crate) fn worth(&self, step: usize, unit: usize) -> bool {
         !self.filter.forbids_adjoint()
-            && self.tubes.get(step, unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
+            && self.tubes.get(step, unit).is_some_and(|tube| tube.extra + tube.extra_coupling > WORTH_M)
     }
 
     /// Whether the adjoint has run at all of these knots.
@@ -99,7 +103,7 @@ impl Swept<'_> {
         }
         for unit in 0..self.chain.links.len() {
             let Some(tube) = self.tubes.get(step, unit).copied() else { return };
-            if tube.extra + tube.extra_coupling < 5e-3 {
+            if tube.extra + tube.extra_coupling < TIGHTEN_M {
                 continue;
             }
             self.tubes.tighten_coupling(self.chain, self.motion, step, unit);
