@@ -11,6 +11,8 @@ const HEADING_TOLERANCE_RAD: f64 = 0.04;
 const MOST_TURN_RAD: f64 = 0.5;
 /// Bound of half-widths that tags and users can mean, metres.
 const MOST_WIDTH_M: f64 = 1e4;
+/// Spacings of stations that are taken, metres. They bound the number of stations of a road.
+const SPACINGS_M: std::ops::RangeInclusive<f64> = 0.01..=200.0;
 /// Largest coordinates, metres.
 pub(crate) const FARTHEST_M: f64 = 1e8;
 /// A heading error of x moves the middle of the chord by an eighth of x per metre.
@@ -26,9 +28,32 @@ pub struct RoadError {
     pub problem: String,
 }
 
+/// Tests that stations form a corridor. Returns for each the error bound of the curve from there to the next one (metres),
+/// and the heading difference at its end (radians). With `lenient` a station that does not fit is no error: the bound of
+/// the stretch before it is infinite.
+pub(crate) fn misfits(c: &Corridor, lenient: bool) -> Result<Vec<[f64; 2]>, RoadError> {
+    let n = c.len();
+    let same = [&c.y, &c.heading, &c.curvature, &c.left_m, &c.right_m];
+    if n < 2 || same.iter().any(|column| column.len() != n) {
+        return Err(RoadError { station: 0, problem: format!("{n} stations, or columns of unequal length") });
+    }
+    if !SPACINGS_M.contains(&c.spacing_m) {
+        return Err(RoadError { station: 0, problem: format!("a spacing of {} m", c.spacing_m) });
+    }
+    let mut misfits = vec![[0.0; 2]; n];
+    for k in 0..n {
+        misfits[k.saturating_sub(1)] = match check_station(c, k) {
+            Err(wrong) if !lenient || !finite(c, k) => return Err(wrong),
+            Err(_) => [f64::INFINITY, 0.0],
+            Ok(off) => off,
+        };
+    }
+    Ok(misfits)
+}
+
 /// Tests that station `k` has usable values and follows from the one before it. Returns the error bound of the curve
 /// from there (metres), and the heading difference at its end (radians).
-pub(crate) fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
+fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     let wrong = |problem: String| Err(RoadError { station: k, problem });
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
     if !finite(c, k) {
@@ -63,7 +88,7 @@ pub(crate) fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadErro
     Ok([off + TO_MIDDLE * c.spacing_m * turned, turned])
 }
 
-pub(crate) fn finite(c: &Corridor, k: usize) -> bool {
+fn finite(c: &Corridor, k: usize) -> bool {
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
     values.iter().all(|v| v.is_finite() && v.abs() < FARTHEST_M)
 }

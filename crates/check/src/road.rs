@@ -5,14 +5,12 @@
 
 use crate::areas::Areas;
 use crate::curve::{Place, curve};
-use crate::fit::{RoadError, check_station, finite};
+use crate::fit::{RoadError, misfits};
 use crate::vector::length;
 use netcert_base::corridor::Corridor;
 
 /// Roads of less curvature are straight, 1/m.
 const BENT: f64 = 1e-3;
-/// Spacings of stations that are taken, metres. They bound the number of stations of a road.
-const SPACINGS_M: std::ops::RangeInclusive<f64> = 0.01..=200.0;
 /// Least length of the course's direction, which is 1 but for what stations are off.
 const LEAST_LENGTH: f64 = 0.1;
 /// A half-width lies below its chord by at most this part of the growth of its slope, times the length.
@@ -70,55 +68,40 @@ impl Road {
     /// [`RoadError`] with the first station that does not fit. With `lenient` such a station is no error, and nothing
     /// is known of the stretch before it. Areas must be well-formed even so.
     pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
-        let n = corridor.len();
-        let same = [&corridor.y, &corridor.heading, &corridor.curvature, &corridor.left_m, &corridor.right_m];
-        if n < 2 || same.iter().any(|column| column.len() != n) {
-            return Err(RoadError { station: 0, problem: format!("{n} stations, or columns of unequal length") });
-        }
-        let spacing = corridor.spacing_m;
-        if !SPACINGS_M.contains(&spacing) {
-            return Err(RoadError { station: 0, problem: format!("a spacing of {spacing} m") });
-        }
-        let (mut slack, mut jumps) = (vec![0.0; n], vec![0.0; n]);
-        for k in 0..n {
-            let before = k.saturating_sub(1);
-            [slack[before], jumps[before]] = match check_station(corridor, k) {
-                Err(wrong) if !lenient || !finite(corridor, k) => return Err(wrong),
-                Err(_) => [f64::INFINITY, 0.0],
-                Ok(off) => off,
-            };
-        }
+        let misfits = misfits(corridor, lenient)?;
+        let (n, spacing) = (corridor.len(), corridor.spacing_m);
+        let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);
         let origin = [corridor.x[0], corridor.y[0]];
-        let own = (0..n).map(|k| Place {
+        let own = |k: usize| Place {
             c: [corridor.x[k] - origin[0], corridor.y[k] - origin[1]],
             t: [corridor.heading[k].cos(), corridor.heading[k].sin()],
             curvature: corridor.curvature[k],
-        });
-        let stations: Vec<Place> = own.collect();
-        let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);
+        };
+        let all = lead + n + tail;
         let mut road = Self {
             spacing,
             lead,
             count: n,
-            stations: Vec::with_capacity(lead + n + tail),
-            bends: Vec::with_capacity(lead + n + tail),
-            widths: Vec::with_capacity(lead + n + tail),
-            slack: Vec::with_capacity(lead + n + tail),
-            jumps: Vec::with_capacity(lead + n + tail),
-            growth: Vec::new(),
+            stations: Vec::with_capacity(all),
+            bends: Vec::with_capacity(all),
+            widths: Vec::with_capacity(all),
+            slack: Vec::with_capacity(all),
+            jumps: Vec::with_capacity(all),
+            growth: Vec::with_capacity(all),
             areas: Areas::new(corridor, lead)?,
         };
-        for k in 0..lead + n + tail {
+        for k in 0..all {
             let inner = k.saturating_sub(lead).min(n - 1);
-            let place = stations[inner];
+            let place = own(inner);
             let beyond = (k as f64 - (lead + inner) as f64) * spacing;
             let c = [place.c[0] + beyond * place.t[0], place.c[1] + beyond * place.t[1]];
             let inside = k >= lead && inner + 1 < n;
-            let bend = if inside { [stations[inner].curvature, stations[inner + 1].curvature] } else { [0.0; 2] };
+            let bend = if inside { [corridor.curvature[inner], corridor.curvature[inner + 1]] } else { [0.0; 2] };
+            let [slack, jump] = if inside { misfits[inner] } else { [0.0; 2] };
             road.stations.push(Place { c, ..place });
             road.bends.push(bend);
-            road.slack.push(if inside { slack[inner] } else { 0.0 });
-            road.jumps.push(if inside { jumps[inner] } else { 0.0 });
+            road.slack.push(slack);
+            road.jumps.push(jump);
             road.widths.push([corridor.left_m[inner], corridor.right_m[inner]]);
         }
         let mut sums = [0.0; 2];

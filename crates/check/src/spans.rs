@@ -13,16 +13,12 @@ impl Subject<'_> {
     /// Checks the claims. Returns the findings of each claim; a claim without findings is proved.
     #[must_use]
     pub fn check(&self, claims: &[SpanClaim]) -> Vec<Vec<Finding>> {
-        let mut findings = vec![Vec::new(); claims.len()];
         let Some(motion) = &self.motion else {
-            for (claim, found) in claims.iter().zip(&mut findings) {
-                if claim.rsc_m.is_some() {
-                    found
-                        .push(finding("rsc_m", "the plan cannot be driven: it turns back, or a unit stands across it"));
-                }
-            }
-            return findings;
+            let wrong = "the plan cannot be driven: it turns back, or a unit stands across it";
+            let of = |claim: &SpanClaim| claim.rsc_m.map(|_| finding("rsc_m", wrong)).into_iter().collect();
+            return claims.iter().map(of).collect();
         };
+        let mut findings = vec![Vec::new(); claims.len()];
         let tolerance = |claim: &SpanClaim| claim.shrink.min(1.0) * self.chain.tolerance_m;
         let mut tolerances: Vec<f64> = claims.iter().map(tolerance).collect();
         tolerances.sort_by(f64::total_cmp);
@@ -31,29 +27,12 @@ impl Subject<'_> {
         let mut whole = Swept::new(self.chain, &self.road, motion, most);
         for tolerance_m in tolerances {
             let own: Vec<usize> = (0..claims.len()).filter(|&i| tolerance(&claims[i]) == tolerance_m).collect();
-            let mut part = None;
-            if tolerance_m < most {
+            let mut part = (tolerance_m < most).then(|| {
                 let spans = own.iter().map(|&i| self.stretches(&claims[i].stations));
                 let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
-                part = Some(whole.within(tolerance_m, range));
-            }
-            let swept = part.as_mut().unwrap_or(&mut whole);
-            self.limiting_places(swept, claims, &own, &mut findings);
-            self.leeway(swept, claims, &own, &mut findings);
-            self.room(swept, claims, &own, &mut findings);
-            for i in own {
-                if let Some(station) = self.torn_before(swept, &claims[i]) {
-                    let detail = format!(
-                        "{:.1} m: no corridor fits the station, and how the units stood there still matters on the span",
-                        (station as f64 - self.road.lead as f64) * self.road.spacing
-                    );
-                    findings[i].push(Finding { weight: Weight::Unbounded, ..finding("rsc_m", &detail) });
-                }
-                let margin = claims[i].hinge_margin_rad;
-                if let Some(short) = margin.and_then(|margin| self.hinges(swept, &claims[i].stations, margin)) {
-                    findings[i].push(Finding { weight: short.1, ..finding("hinge_margin_deg", &short.0) });
-                }
-            }
+                whole.within(tolerance_m, range)
+            });
+            self.check_some(part.as_mut().unwrap_or(&mut whole), claims, &own, &mut findings);
         }
         // Where room is missing, nothing is promised, and a place without a bound contradicts nothing.
         let nothing_promised =
@@ -62,6 +41,26 @@ impl Subject<'_> {
             finding.weight = Weight::Remark;
         }
         findings
+    }
+
+    /// Checks the claims of these numbers, which are made at one tolerance.
+    fn check_some(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+        self.limiting_places(swept, claims, own, findings);
+        self.leeway(swept, claims, own, findings);
+        self.room(swept, claims, own, findings);
+        for &i in own {
+            if let Some(station) = self.torn_before(swept, &claims[i]) {
+                let detail = format!(
+                    "{:.1} m: no corridor fits the station, and how the units stood there still matters on the span",
+                    (station as f64 - self.road.lead as f64) * self.road.spacing
+                );
+                findings[i].push(Finding { weight: Weight::Unbounded, ..finding("rsc_m", &detail) });
+            }
+            let margin = claims[i].hinge_margin_rad;
+            if let Some(short) = margin.and_then(|margin| self.hinges(swept, &claims[i].stations, margin)) {
+                findings[i].push(Finding { weight: short.1, ..finding("hinge_margin_deg", &short.0) });
+            }
+        }
     }
 
     /// The last station that does not fit its neighbours and that the steer axle passed so shortly before a claimed span that the units have

@@ -54,21 +54,17 @@ pub(crate) struct Known {
 
 impl<'a> Swept<'a> {
     pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
-        Self::begin(chain, road, motion, Filter::new(chain, road.spacing, tolerance_m))
+        Self::of(chain, road, motion, Filter::new(chain, road.spacing, tolerance_m), motion.steps())
     }
 
     /// Uses the filter's bounds alone, however loose they are.
     pub(crate) fn filtered(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
         let (mut filter, tubes) = Filter::new(chain, road.spacing, tolerance_m);
         filter.forbid_adjoint(true);
-        Self::begin(chain, road, motion, (filter, tubes))
-    }
-
-    fn begin(chain: &'a Chain, road: &'a Road, motion: &'a Motion, (filter, tubes): (Filter, Tubes)) -> Self {
         Self::of(chain, road, motion, (filter, tubes), motion.steps())
     }
 
-    /// Adds all tubes before step `end`.
+    /// The vehicle with tubes up to step `end`, from a filter that begins.
     fn of(
         chain: &'a Chain,
         road: &'a Road,
