@@ -70,3 +70,32 @@ pub(crate) fn to_segment(p: Point, [a, b]: Segment) -> Point {
     let share = if square > 0.0 { ((from[0] * way[0] + from[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
     [share * way[0] - from[0], share * way[1] - from[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::length;
+
+    fn clearance(hull: &[Point], segment: Segment) -> f64 {
+        length(way(hull, segment))
+    }
+
+    #[test]
+    fn distances_of_hulls_are_exact() {
+        let square = hull(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0], [1.0, 0.0]]);
+        assert_eq!(square.len(), 4);
+        for (segment, expected) in [
+            ([[3.0, -5.0], [3.0, 5.0]], 1.0),
+            ([[3.0, 3.0], [3.0, 5.0]], f64::sqrt(2.0)),
+            ([[1.0, 1.0], [1.5, 1.0]], 0.0),
+            ([[-1.0, 1.0], [5.0, 1.0]], 0.0),
+            ([[4.0, 0.0], [0.0, 4.0]], 0.0),
+            ([[5.0, 0.0], [0.0, 5.0]], 0.5 * f64::sqrt(2.0)),
+        ] {
+            assert!((clearance(&square, segment) - expected).abs() < 1e-12, "{segment:?}");
+        }
+        let line = hull(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]);
+        assert!((clearance(&line, [[1.0, 1.0], [9.0, 1.0]]) - 1.0).abs() < 1e-12);
+        assert!((clearance(&hull(&[[0.0; 2]; 3]), [[3.0, 4.0], [3.0, 9.0]]) - 5.0).abs() < 1e-12);
+    }
+}

@@ -39,7 +39,7 @@ enum Fate {
     Dull(Node, Vec<[f64; 2]>),
     /// The same, but the claim has failed already. The search ends, and the adjoint is spared.
     Spared,
-    /// This place has less room than is asked for, or no more than this bound is known of it.
+    /// It fails: a place of it, and the bound of the room there.
     Lacking(Point, f64),
     /// Only its parts can be decided.
     Halved([Node; 2]),
@@ -153,8 +153,8 @@ impl Swept<'_> {
             return Fate::Kept;
         }
         let ways = search.ways(&near, &seen, needed.max(search.conceded()));
-        let close = self.close(&ways, &seen, needed, search);
         // What is far enough from the whole piece is far enough from its parts.
+        let close = self.close(&ways, &seen, needed, search);
         if close.iter().zip(&search.boundaries).any(|(close, b)| close.is_empty() && b.contains(corners[0])) {
             return Fate::Kept;
         }
