@@ -9,7 +9,7 @@ use crate::swept::{ABOUT, Swept};
 const ROAD_M: f64 = 2e-7;
 /// Second derivatives are taken at a cell's corners. Between them they may be greater by this factor.
 pub(crate) const BETWEEN: f64 = 1.25;
-/// Added to a second derivative in time, 1/m, so that a motion that is almost straight is not taken to be straight.
+/// Added to a second derivative in time besides, 1/m, because a factor adds nothing to 0.
 pub(crate) const BEND_ROUNDING: f64 = 1e-5;
 /// Added to the sine at a cell's corners, because it is greater between them.
 pub(crate) const SIN_SPARE: f64 = 0.05;

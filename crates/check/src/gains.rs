@@ -14,7 +14,7 @@ use crate::{HISTORY_UP, UP};
 const KNOT_M: f64 = 0.0625;
 /// Share of a response's integral at which it is no longer followed.
 const REST: f64 = 1e-6;
-/// A step is at most this part of the shortest unit and this long (metres), but no shorter than this part of the vehicle.
+/// At least so many steps to the shortest unit, none longer than this (metres), but at most so many to the whole vehicle.
 const STEPS_A_UNIT: f64 = 40.0;
 const LONGEST_STEP_M: f64 = 0.05;
 const MOST_STEPS: f64 = 4000.0;

@@ -12,7 +12,7 @@ const MOST_HEADING_RAD: f64 = 0.6;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
 /// Most rounds of raising a guess until it reproduces itself.
 pub(crate) const ROUNDS: usize = 60;
-/// A guess is raised by this factor and by this much beyond what came of it, so that a few rounds do, from nothing too.
+/// A guess is raised by this factor and by this much beyond what came of it, so that few rounds do. From 0 a factor leads nowhere.
 pub(crate) const RAISE: f64 = 1.02;
 const RAISE_BY: f64 = 1e-9;
 /// The first guess: so much more than at the step's start, metres or radians, and this factor of the heading's straight gain.
