@@ -15,9 +15,9 @@ use super::block::{Minima, UNVISITED_M};
 use super::group::gamma;
 use super::lanes::{TAG_MASK, Vector, by_instruction_set};
 use super::model::Model;
+use super::reach::Reach;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
-use super::sweep::Reach;
 use super::track::Track;
 
 /// How an ascent proceeds.

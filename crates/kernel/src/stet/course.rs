@@ -3,15 +3,19 @@
 use std::ops::Range;
 use std::rc::Rc;
 
+use netcert_base::corrections::Options;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
-use super::plan::Unplanned;
+use super::held::finished;
+use super::marked::{Marks, marked};
+use super::model::Model;
+use super::plan::{self, Unplanned};
 use super::plane::Grounds;
+use super::results::Planned;
 use super::shift::{self, Plan};
 use super::swept::Swept;
 use super::track::Track;
-use super::{Case, Marks, Model, Options, Planned, finished, plan, track};
 
 /// A corridor prepared for one vehicle and one span of stations. Its certificates are those of [`super::certify_spans`].
 pub struct Course<'c> {
@@ -26,7 +30,7 @@ impl<'c> Course<'c> {
     #[must_use]
     pub fn new(corridor: &'c Corridor, model: &'c Model, span: &Range<usize>, grounds: &Grounds) -> Option<Self> {
         let spans = std::slice::from_ref(span);
-        let prepared = || track(corridor, model, spans, Marks::Ends, grounds);
+        let prepared = || marked(corridor, model, spans, Marks::Ends, grounds);
         (!corridor.is_empty()).then(|| Self { corridor, model, span: span.clone(), track: prepared() })
     }
 
@@ -50,8 +54,7 @@ impl<'c> Course<'c> {
         } else if !swept.measure_least(&self.span, above_m, believed_m) {
             return None;
         }
-        let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };
-        Some(finished(swept, &case, Marks::Ends, options, &never))
+        Some(finished(swept, self.corridor, options))
     }
 
     /// Certifies the vehicle along a plan that was made on another corridor, such as a narrower one. `None` if the plan does not fit the
@@ -69,8 +72,7 @@ impl<'c> Course<'c> {
         } else if !swept.measure_least(&self.span, f64::NEG_INFINITY, f64::INFINITY) {
             return None;
         }
-        let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };
         let as_given = Options { correction_sweeps: 0, max_shift_m: 0.0 };
-        Some(finished(swept, &case, Marks::Ends, &as_given, &never))
+        Some(finished(swept, self.corridor, &as_given))
     }
 }

@@ -5,11 +5,11 @@ use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, Staged, row};
 use super::group::Group;
 use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::MAX_UNITS;
+use super::ride::Ride;
 use super::step::{
     Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
     remainder, validity,
 };
-use super::sweep::Ride;
 use super::track::Track;
 
 /// The steer axles of a block's lanes at its head stations and at the next two.

@@ -6,10 +6,11 @@
 
 use thiserror::Error;
 
+use super::marked::Marks;
 use super::model::Model;
+use super::results::Certificate;
 use super::shift::{Plan, STEP_M, count};
 use super::swept::Swept;
-use super::{Certificate, Marks};
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 

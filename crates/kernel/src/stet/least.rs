@@ -6,8 +6,9 @@
 use std::ops::Range;
 
 use super::block::Minima;
+use super::ride::{Refining, Wanted};
 use super::spans;
-use super::sweep::{Refining, Wanted, sweep_hopeless};
+use super::sweep::sweep_hopeless;
 use super::swept::Swept;
 
 /// Steps with less leeway than this are all measured, metres, at γ = 1 and at γ_min: SHRINK asks for those that fail at γ = 1, and for

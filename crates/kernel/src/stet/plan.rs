@@ -7,15 +7,16 @@
 
 use std::ops::Range;
 
-use super::Options;
 use super::ascent::{Ascent, climb, relief};
 use super::block::{Minima, UNVISITED_M};
 use super::lanes::{TAG_MASK, on_widest};
 use super::model::Model;
+use super::ride::{Ride, Wanted};
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
-use super::sweep::{Ride, Wanted, sweep};
+use super::sweep::sweep;
 use super::track::Track;
+use netcert_base::corrections::Options;
 use netcert_base::stop::Stop;
 
 /// Leeway beyond this scores nothing.

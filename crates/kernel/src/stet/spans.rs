@@ -2,6 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use netcert_base::corridor::Side;
 use netcert_base::leeway::known_m;
 
 pub(super) use netcert_base::leeway::NOTHING_M;
@@ -10,8 +11,8 @@ use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
+use super::results::{Limiting, SpanResult};
 use super::track::Track;
-use super::{Limiting, Side, SpanResult};
 
 /// Stations that a span takes beyond each end. A foot moves up to two stations per station of the steer axle, rounding
 /// included. A side's least leeway may also be a little beside the point where it is noted.

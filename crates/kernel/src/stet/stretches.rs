@@ -2,27 +2,49 @@
 //!
 //! One round of corrections suits one junction and harms another one. A vehicle that goes straight on for long between two areas forgets
 //! the first one, so each stretch is planned by itself. Where two stretches meet, one plan fades into the other. This decides nothing: the
-//! whole is certified along the joined plan.
+//! whole is certified along the joined plan, and along one plan for all where that leaves a span too little.
 
 use std::ops::Range;
 
+use super::held::{safe, swept_as_one};
+use super::marked::Marks;
 use super::model::Model;
+use super::results::SpanResult;
 use super::shift::{KNOT_STATIONS, Plan, STEP_M, count};
-use super::{Marks, Options, swept_as_one};
+use super::swept::Swept;
+use netcert_base::corrections::Options;
 use netcert_base::corridor::{AreaSpan, Corridor};
 use netcert_base::stop::Stop;
 
 /// How far a stretch is planned beyond its ends, metres. Areas that are twice as far apart belong to two stretches.
 const BEYOND_M: f64 = 16.0;
 
-/// The plan of a corridor that has several stretches. `None` if it has one only, or nothing is to be corrected.
-pub(super) fn plan(
+/// The sweeps along the plan under which most spans are safe: that of each stretch by itself, or one for the whole corridor.
+pub(super) fn best_swept<'m>(
     corridor: &Corridor,
-    model: &Model,
-    spans: &[Range<usize>],
+    model: &'m Model,
+    spans: &'m [Range<usize>],
+    marks: Marks,
     options: &Options,
-    stop: &Stop,
-) -> Option<Plan> {
+    stop: &'m Stop,
+) -> (Swept<'m>, Vec<SpanResult>) {
+    let joined = plan(corridor, model, spans, options, stop).map(|plan| {
+        let swept = Swept::along(corridor, model, spans, marks, stop, |_| plan);
+        let results = swept.results();
+        (swept, results)
+    });
+    match joined {
+        None => swept_as_one(corridor, model, spans, marks, options, stop),
+        Some(joined) if safe(&joined.1) == spans.len() => joined,
+        Some(joined) => {
+            let whole = swept_as_one(corridor, model, spans, marks, options, stop);
+            if safe(&joined.1) > safe(&whole.1) { joined } else { whole }
+        }
+    }
+}
+
+/// The plan of a corridor that has several stretches. `None` if it has one only, or nothing is to be corrected.
+fn plan(corridor: &Corridor, model: &Model, spans: &[Range<usize>], options: &Options, stop: &Stop) -> Option<Plan> {
     let ends = ends(corridor);
     if ends.len() < 3 || !options.correct() {
         return None;
@@ -98,7 +120,7 @@ mod tests {
 
     use super::*;
     use crate::stet::plane::tests::as_area;
-    use crate::stet::{SpanResult, certify_parts, certify_spans};
+    use crate::stet::{certify_parts, certify_spans};
 
     const SPACING_M: f64 = 0.5;
     const FIRST: Range<usize> = 120..420;

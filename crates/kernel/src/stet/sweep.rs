@@ -7,7 +7,6 @@
 
 use std::cell::RefCell;
 use std::cmp::Reverse;
-use std::ops::Range;
 
 use super::adjoint::{self, Histories, Refined, Trail, first_loose};
 use super::block::{BLOCK, FIELDS, Minima, NOT_CLOSED_RAD};
@@ -16,87 +15,11 @@ use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
 use super::lanes::{LANES, Vector, on_widest};
 use super::leeway;
-use super::model::{MAX_UNITS, Model};
+use super::model::MAX_UNITS;
+use super::ride::{Refining, Ride};
 use super::spans;
-use super::track::{Extensions, Track};
 use netcert_base::stop::Stop;
 use netcert_base::watch;
-
-/// Vehicles share a track whose lengths, in steps of this, are the same, metres.
-const LENGTH_STEP_M: f64 = 8.0;
-/// Vehicles up to this front overhang share a track. The longest of the catalogue is 3 m.
-const LEAST_FRONT_M: f64 = 4.0;
-
-/// Assumed reach of a vehicle behind and ahead of its steer axle, metres. Vehicles of the same reach share a track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Reach {
-    pub(super) length_m: f64,
-    pub(super) front_m: f64,
-}
-
-impl Reach {
-    pub(super) fn of(model: &Model) -> Self {
-        let length_m = (model.length / LENGTH_STEP_M).ceil() * LENGTH_STEP_M;
-        Self { length_m, front_m: model.front.max(LEAST_FRONT_M) }
-    }
-
-    /// The extensions before and behind the corridor.
-    pub(super) fn extensions(self, spacing: f64) -> Extensions {
-        let Self { length_m, front_m } = self;
-        let slack = (BLOCK + 2 * LANES) as f64 * spacing;
-        Extensions {
-            lead_m: length_m + front_m + 2.0 * LANES as f64 * spacing,
-            tail_m: length_m + 2.0 * front_m + 2.0 * slack + 10.0,
-            front_m,
-        }
-    }
-}
-
-/// One lane of a sweep: a vehicle that drives along a track at one γ.
-#[derive(Clone, Copy)]
-pub(super) struct Ride<'r> {
-    pub(super) track: &'r Track,
-    pub(super) model: &'r Model,
-    /// γ wanted of the vehicle, which keeps to its own γ_min.
-    pub(super) shrink: f64,
-    /// The steer path: metres left of the centreline at each extended station.
-    pub(super) shift: &'r [f64],
-    pub(super) wanted: Wanted<'r>,
-}
-
-/// The leeways that a sweep computes, by block of head stations. Blocks that are not wanted are skipped. Blocks to be refined
-/// use the adjoint.
-#[derive(Clone, Copy)]
-pub(super) struct Wanted<'w> {
-    /// All, if not given.
-    pub(super) blocks: Option<&'w [bool]>,
-    pub(super) refining: Refining<'w>,
-    /// Without `CERTIFY`: not even the straight gains are deducted.
-    pub(super) plain: bool,
-    /// Only the least leeway of this span is asked for, or (if `plain`) whether any is negative. What has more need not be noted.
-    pub(super) only: Option<&'w Range<usize>>,
-    /// Steps in areas with less leeway than this are noted, though another one has less.
-    pub(super) keep: f64,
-}
-
-/// What the first use of the adjoint in a block of head stations depends on.
-#[derive(Clone, Copy)]
-pub(super) enum Refining<'w> {
-    /// The filter serves everywhere.
-    Nowhere,
-    /// From this unit on.
-    From(&'w [usize]),
-    /// Where this sweep finds the filter loose.
-    WhereLoose,
-}
-
-impl Wanted<'_> {
-    /// Everything, by the filter alone.
-    pub(super) const ALL: Wanted<'static> =
-        Wanted { blocks: None, refining: Refining::Nowhere, plain: false, only: None, keep: f64::NEG_INFINITY };
-    /// The leeway of everything without disturbances.
-    pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
-}
 
 /// Sweeps vehicles along their tracks, eight at a time, and returns the minima of each. No ride matters to another one. With
 /// `CERTIFY`, all bounds are deducted and hinges are checked. Otherwise the result is the nominal leeway of a few points less
@@ -131,23 +54,6 @@ pub(super) fn sweep_hopeless(full: &Ride<'_>, least: &Ride<'_>, below_m: f64, st
     };
     let found = swept(below_m);
     if below_m.is_finite() && found[1].floor >= below_m { swept(f64::INFINITY) } else { found }
-}
-
-impl Ride<'_> {
-    /// The head station before which the sweep ends at the latest: the rear has left what is asked for.
-    fn end(&self) -> usize {
-        let track = self.track;
-        let ahead = ((self.model.front + 4.0) / track.spacing).ceil() as usize + LANES;
-        let last = track.len() - ahead - BLOCK;
-        let last = self.wanted.only.map_or(last, |span| last.min(spans::touching(track, self.model, span).end));
-        self.asked_end().map_or(last, |end| last.min(end))
-    }
-
-    /// The head station behind the last block that is asked for, if not all are.
-    fn asked_end(&self) -> Option<usize> {
-        let blocks = self.wanted.blocks?;
-        Some(blocks.iter().rposition(|&asked| asked).map_or(0, |block| (block + 1) * BLOCK))
-    }
 }
 
 /// A ride on its way.

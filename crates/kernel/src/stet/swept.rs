@@ -3,17 +3,21 @@
 use std::ops::Range;
 use std::rc::Rc;
 
+use netcert_base::corrections::Options;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
 use super::block::{BLOCK, Minima};
+use super::marked::{Marks, marked};
 use super::model::Model;
 use super::plan::{self, Unplanned};
 use super::plane::Grounds;
+use super::results::{Certificate, SpanResult};
+use super::ride::{Refining, Ride, Wanted};
 use super::shift::Plan;
-use super::sweep::{Refining, Ride, Wanted, sweep};
+use super::spans;
+use super::sweep::sweep;
 use super::track::Track;
-use super::{Certificate, Marks, Options, SpanResult, spans, track};
 
 /// A vehicle with its plan, and its sweeps.
 pub(super) struct Swept<'m> {
@@ -151,7 +155,7 @@ impl<'m> Swept<'m> {
         stop: &'m Stop,
         plan: impl FnOnce(&Track) -> Plan,
     ) -> Self {
-        let track = track(corridor, model, spans, marks, &Grounds::default());
+        let track = marked(corridor, model, spans, marks, &Grounds::default());
         let plan = plan(&track);
         let mut swept = Self::ready(track, model, plan, spans, stop);
         measure(std::slice::from_mut(&mut swept), marks, stop);

@@ -1,14 +1,15 @@
 //! The tubes, for files and pictures: each axle's nominal place and the bound of its deviation.
 
-use super::Certificate;
 use super::adjoint::{Histories, Refined, close, first_loose, refine};
 use super::block::{BLOCK, FIELDS, row};
 use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
 use super::lanes::{LANES, Vector, on_widest};
 use super::model::Model;
+use super::reach::Reach;
+use super::results::Certificate;
+use super::ride::{Ride, Wanted};
 use super::step::MOST;
-use super::sweep::{Reach, Ride, Wanted};
 use super::track::Track;
 use netcert_base::corridor::Corridor;
 
