@@ -12,6 +12,13 @@ use super::track::{Fields, Track};
 pub(super) const NEAR_M: f64 = 1.0;
 /// Most stations walked to find a foot.
 const MOST_STEPS: usize = 128;
+/// Most stations by which a foot is corrected at once.
+const MOST_MOVED: usize = 64;
+/// A foot goes on to the next station when it has passed the middle between both by this factor. It is a little more than one, so that
+/// rounding does not send it to and fro.
+const PAST_MIDDLE: f64 = 1.04;
+/// Least factor by which normals crowd on the inside of a bend. Half-widths end before that.
+const NARROWEST: f64 = 0.1;
 /// Most stations between two successive feet of a point. If there are more, the point jumped over them and nothing is
 /// certified there.
 const JUMPED: usize = 4;
@@ -288,10 +295,10 @@ pub(super) fn follow<V: Vector>(track: &Track, first: usize, x: V, y: V) -> [usi
             let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
             let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
             // On the outside of a curve stations are farther apart at the point than on the line.
-            let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
-            if along > 1.04 * half && k < last {
+            let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(NARROWEST);
+            if along > PAST_MIDDLE * half && k < last {
                 k += 1;
-            } else if along < -1.04 * half && k > 0 {
+            } else if along < -PAST_MIDDLE * half && k > 0 {
                 k -= 1;
             } else {
                 break;
@@ -305,16 +312,21 @@ pub(super) fn follow<V: Vector>(track: &Track, first: usize, x: V, y: V) -> [usi
 /// The station to start the next eight feet from: one after the last of these, corrected by its offset `along`.
 #[inline(always)]
 pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
+    moved(foot + 1, along / track.spacing).min(track.len() - LANES)
+}
+
+/// The station `by` stations from `foot`, at most [`MOST_MOVED`] to either side and not before the first.
+#[inline(always)]
+pub(super) fn moved(foot: usize, by: f64) -> usize {
     // Truncating a positive number rounds without a call on machines that lack the instruction. NaN gives 0.
-    let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
-    (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
+    let off = (by + (MOST_MOVED as f64 + 0.5)).clamp(0.0, (2 * MOST_MOVED) as f64) as usize;
+    (foot + off).saturating_sub(MOST_MOVED)
 }
 
 /// Metres a point moves along the corridor while its foot moves a metre, 1 − κb. It is below 1 on the inside of a bend.
-/// The least value is 0.1; half-widths end before that.
 #[inline(always)]
 pub(super) fn narrow<V: Vector>(at: &Fields<V>, lateral: V) -> V {
-    (V::splat(1.0) - at.curvature * lateral).max(V::splat(0.1))
+    (V::splat(1.0) - at.curvature * lateral).max(V::splat(NARROWEST))
 }
 
 /// Arc length from the station to the foot of a point at (`along`, `lateral`), and the lateral place at that foot.

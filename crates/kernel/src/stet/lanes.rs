@@ -261,11 +261,11 @@ macro_rules! by_instruction_set {
             match $vector::SET {
                 // SAFETY: `on_widest` chose the vector, so the processor has what the function is compiled for.
                 #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
-                super::lanes::InstructionSet::Avx512 => unsafe { avx512::<$vector $(, $flag)*>($($argument),*) },
+                $crate::stet::lanes::InstructionSet::Avx512 => unsafe { avx512::<$vector $(, $flag)*>($($argument),*) },
                 // SAFETY: as above.
                 #[cfg(target_arch = "x86_64")]
-                super::lanes::InstructionSet::Avx2 => unsafe { avx2::<$vector $(, $flag)*>($($argument),*) },
-                super::lanes::InstructionSet::Any => any::<$vector $(, $flag)*>($($argument),*),
+                $crate::stet::lanes::InstructionSet::Avx2 => unsafe { avx2::<$vector $(, $flag)*>($($argument),*) },
+                $crate::stet::lanes::InstructionSet::Any => any::<$vector $(, $flag)*>($($argument),*),
             }
         }
     )+};
