@@ -240,6 +240,7 @@ impl Ascent {
             self.response.ask(pull, pull.weights.map(|weight| f64::from(of(weight)) * share));
         }
         let mut out = vec![0.0; self.count];
+        // At a knot the spline weighs its coefficients by a sixth, four sixths and a sixth.
         for (knot, v) in self.response.trace_back().iter().enumerate() {
             let j = knot.min(self.count - 3);
             out[j] += *v * (1.0 / 6.0);
@@ -336,7 +337,7 @@ impl Limits {
     }
 }
 
-/// The steer axle's shift at the knots of the plan and beyond.
+/// The steer axle's shift at the knots of the plan and beyond. There the spline weighs its coefficients by (1, 4, 1)/6.
 #[inline(always)]
 fn steer(coefficients: &[f64], knots: usize) -> Vec<f64> {
     let last = coefficients.len() - 3;

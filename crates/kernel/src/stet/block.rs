@@ -10,6 +10,8 @@ pub(super) const BLOCK: usize = 32;
 const FADING_BLOCKS: usize = 3;
 /// Hinge margin where the recursion of the bounds does not close.
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
+/// A margin below this means the same: tags and chords between two of them change it a little.
+pub(super) const BARELY_CLOSED_RAD: f64 = 0.5 * NOT_CLOSED_RAD;
 /// Number of rows that the motion writes per unit, one per field.
 pub(super) const FIELDS: usize = 11;
 pub(super) use netcert_base::leeway::UNVISITED_M;

@@ -5,59 +5,31 @@ use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, Staged, row};
 use super::group::Group;
 use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::MAX_UNITS;
-use super::ride::Ride;
+use super::steer::SteerPaths;
 use super::step::{
-    Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
-    remainder, validity,
+    Filter, MOST, Step, Straying, UnitLanes, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin,
+    hitch_remainder, remainder, validity,
 };
-use super::track::Track;
 
-/// The steer axles of a block's lanes at its head stations and at the next two.
-pub(super) struct SteerPaths {
-    x: [[f64; LANES]; BLOCK + 2],
-    y: [[f64; LANES]; BLOCK + 2],
-    /// The tracks' first headings.
-    heading: [[f64; LANES]; 2],
-    /// 1 over the square of the spacing, 1/m².
-    per_step2: [f64; LANES],
-    /// Stations driven.
-    driven: usize,
-}
-
-impl SteerPaths {
-    /// Before the first block.
-    pub(super) fn new(rides: &[&Ride<'_>]) -> Self {
-        let lanes = |of: &dyn Fn(&Track) -> f64| std::array::from_fn(|lane| of(rides[lane.min(rides.len() - 1)].track));
-        let per_step2 = lanes(&|track| 1.0 / (track.spacing * track.spacing));
-        let heading =
-            [lanes(&|track| track.fields.tangent_x[track.lead]), lanes(&|track| track.fields.tangent_y[track.lead])];
-        Self { x: [[0.0; LANES]; BLOCK + 2], y: [[0.0; LANES]; BLOCK + 2], heading, per_step2, driven: 0 }
-    }
-
-    /// Moves on to the next block. A ride that has ended goes straight on.
-    pub(super) fn next_block(&mut self, rides: &[&Ride<'_>]) {
-        for (lane, ride) in rides.iter().enumerate() {
-            let (f, shift, last) = (&ride.track.fields, ride.shift, ride.track.len() - 1);
-            let head = ride.track.first_head + self.driven;
-            for (k, (x, y)) in self.x.iter_mut().zip(&mut self.y).enumerate() {
-                let at = (head + k).min(last);
-                let beyond = (head + k - at) as f64 * ride.track.spacing;
-                x[lane] = f.x[at] - shift[at] * f.tangent_y[at] + beyond * f.tangent_x[at];
-                y[lane] = f.y[at] + shift[at] * f.tangent_x[at] + beyond * f.tangent_y[at];
-            }
-        }
-        for place in self.x.iter_mut().chain(&mut self.y) {
-            let last = place[rides.len() - 1];
-            place[rides.len()..].fill(last);
-        }
-        self.driven += BLOCK;
-    }
-
-    #[inline(always)]
-    fn at<V: Vector>(&self, k: usize) -> (V, V) {
-        (V::from(self.x[k]), V::from(self.y[k]))
-    }
-}
+/// Added to the square of a way so that nothing is divided by zero, m².
+const NO_WAY2: f64 = 1e-30;
+/// Least sum of a length and its projection, or of 1 and a cosine: a unit that is drawn straight back has no half-angle.
+const NO_SUM: f64 = 1e-12;
+/// Least cosine between a heading and a chord. Where it is less, the bounds do not hold anyway.
+const LEAST_COSINE: f64 = 0.05;
+/// What [`chord_lag`] leaves (docs/proof.md, section 2): (0.032 + 0.2x)·κℓ²/8, and a 24th of two other terms.
+const REST: [f64; 2] = [0.004, 0.025];
+const REST_PART: f64 = 1.0 / 24.0;
+/// Share of the second difference of an angle by which it may be greater between two head stations (docs/proof.md, section 10). For a hinge
+/// it is an eighth, and a little more because sines of a step's turn are smaller than its angle. The course of the steer axle is not at the
+/// chord's direction at stations, so the steering takes a quarter.
+const STEERING_OVERSHOOT: f64 = 0.25;
+const HINGE_OVERSHOOT: f64 = 0.14;
+/// Abramowitz and Stegun 4.4.47, the highest power first; and what makes twice its value never too small: twice its error, twice.
+const ATAN: [f64; 5] = [0.020_835_1, -0.085_133_0, 0.180_141_0, -0.330_299_5, 0.999_866_0];
+const ATAN_ALLOWANCE: f64 = 4e-5;
+/// An angle that no hinge allows, radians.
+const FOLDED_RAD: f64 = 4.0;
 
 /// State of the chain between two head stations, vehicles in lanes.
 pub(super) struct Motion<V> {
@@ -131,7 +103,6 @@ impl<V: Vector> Motion<V> {
     /// One head station: writes the rows of every unit, then steps to the next station. `plan` is the steer axle's
     /// place at this station and at the next two.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
     fn station<const CERTIFY: bool, const REFINE: bool>(
         &mut self,
         group: &Group<'_, V>,
@@ -142,13 +113,8 @@ impl<V: Vector> Motion<V> {
     ) {
         let [place, next, after] = plan;
         let (mut x, mut y) = place;
-        let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
-        // The plan may bend more after the step than before it, above all at the corridor's first station.
-        let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
-        let next_bend = (vx * later_y - vy * later_x) / (vx * vx + vy * vy + 1e-30);
-        let mut bend_after = next_bend.abs();
-        let (mut ahead_x, mut ahead_y) = (V::ZERO, V::ZERO);
-        let mut turned_ahead = V::ZERO;
+        let mut way = [next.0 - place.0, next.1 - place.1];
+        let mut ahead = Ahead::of_the_steer_axle(way, [after.0 - next.0, after.1 - next.1]);
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
@@ -162,73 +128,13 @@ impl<V: Vector> Motion<V> {
             x = x - ux * (of.reach - of.length);
             y = y - uy * (of.reach - of.length);
 
-            // The exact chord step: N/D = tan(β/2)·exp(−ℓ/L).
-            let sine = ux * vy - uy * vx;
-            let cosine = ux * vx + uy * vy;
-            let moved = (vx * vx + vy * vy + 1e-30).sqrt();
-            let (pn, pd) = decay(moved * of.inverse_length);
-            let n = sine * pn;
-            let d = (moved + cosine).max(V::splat(1e-12)) * pd;
-            let (nn, dd, nd2) = (n * n, d * d, n * d * 2.0);
-            let norm = V::splat(1.0) / ((nn + dd) * moved);
-            let (c, s) = ((dd - nn) * norm, nd2 * norm);
-            let (mut wx, mut wy) = (vx * c + vy * s, vy * c - vx * s);
+            let mut drawn = Drawn::along(of, [ux, uy], way);
             if CERTIFY {
-                let inverse = V::splat(1.0) / (moved * (moved + cosine));
-                let half_tangent = if unit == 0 {
-                    sine.abs() * (inverse * moved)
-                } else {
-                    let cross = (ahead_x * uy - ahead_y * ux).abs();
-                    let dot = ahead_x * ux + ahead_y * uy;
-                    cross / (dot + 1.0).max(V::splat(1e-12))
-                };
-                let bounded = cosine.max(moved * 0.05);
-                let both = V::splat(1.0) / (moved * bounded);
-                let (inverse_moved, inverse_cosine) = (bounded * both, moved * both);
-                let tangent = sine * inverse_cosine;
-                let hitch_tangent = tangent * of.ratio;
-                let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
-                let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
-                // A curve turns the unit more than its chords do.
-                let lengths = moved * of.inverse_length;
-                let more = bend * chord_lag(lengths);
-                let swerve = (bend - self.bend[unit]).abs();
-                self.bend[unit] = bend;
-                (wx, wy) = (wx - more * wy, wy + more * wx);
-                let after = vx * wx + vy * wy;
-                let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { V::ZERO };
-                let step = Step {
-                    moved,
-                    advance: (cosine + after) * 0.5,
-                    mid_tangent,
-                    sine: sine.abs() * inverse_moved,
-                    cosine: cosine * inverse_moved,
-                    tangent: tangent.abs(),
-                    secant: moved * inverse_cosine,
-                    hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
-                    path_curvature: bend.abs().max(bend_after) * inverse_moved,
-                    chord_rest: moved * (bend.abs() * (lengths * 0.025 + 0.004) + swerve * (1.0 / 24.0))
-                        + bend * bend * (sine.abs() * inverse_moved * of.length * (1.0 / 24.0)),
-                };
-                bend_after = V::ZERO;
-                self.along_x[unit] = ax;
-                self.along_y[unit] = ay;
-                let turned = ux * wy - uy * wx;
-                // Until the next station: the plan's chord turns there, and the unit ahead turns on the way.
-                let folding = if unit == 0 { next_bend - turned } else { turned_ahead - turned };
-                self.joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
-                turned_ahead = turned;
-                let change = (turned - self.turned[unit]).abs();
-                self.staged.note(unit, k, row::CURVATURE, tangent * of.inverse_length);
-                self.staged.note(unit, k, row::WAY2, step.advance * step.advance);
-                self.steps[unit] = step;
-                self.staged.note(unit, k, row::JERK, change.max(self.turned_change[unit]) * per_step2);
-                self.turned[unit] = turned;
-                self.turned_change[unit] = change;
+                self.step::<REFINE>(unit, of, &mut drawn, &mut ahead, per_step2, k);
             }
-            (ahead_x, ahead_y) = (ux, uy);
-            vx = vx - of.reach * (wx - ux);
-            vy = vy - of.reach * (wy - uy);
+            let [wx, wy] = drawn.turned;
+            ahead.heading = [ux, uy];
+            way = [way[0] - of.reach * (wx - ux), way[1] - of.reach * (wy - uy)];
             self.heading_x[unit] = wx;
             self.heading_y[unit] = wy;
         }
@@ -237,16 +143,75 @@ impl<V: Vector> Motion<V> {
         }
     }
 
+    /// Turns a unit by what its chord lacks, and notes what its bounds need of the step.
+    #[inline(always)]
+    fn step<const REFINE: bool>(
+        &mut self,
+        unit: usize,
+        of: &UnitLanes<V>,
+        drawn: &mut Drawn<V>,
+        ahead: &mut Ahead<V>,
+        per_step2: V,
+        k: usize,
+    ) {
+        let Drawn { heading: [ux, uy], way: [vx, vy], sine, cosine, moved, .. } = *drawn;
+        let half_tangent = drawn.half_tangent(unit, ahead.heading);
+        let bounded = cosine.max(moved * LEAST_COSINE);
+        let both = V::splat(1.0) / (moved * bounded);
+        let (inverse_moved, inverse_cosine) = (bounded * both, moved * both);
+        let tangent = sine * inverse_cosine;
+        let hitch_tangent = tangent * of.ratio;
+        let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
+        let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
+        // A curve turns the unit more than its chords do.
+        let lengths = moved * of.inverse_length;
+        let more = bend * chord_lag(lengths);
+        let swerve = (bend - self.bend[unit]).abs();
+        self.bend[unit] = bend;
+        self.along_x[unit] = ax;
+        self.along_y[unit] = ay;
+        let [wx, wy] = drawn.turned;
+        let (wx, wy) = (wx - more * wy, wy + more * wx);
+        drawn.turned = [wx, wy];
+        let after = vx * wx + vy * wy;
+        let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { V::ZERO };
+        let step = Step {
+            moved,
+            advance: (cosine + after) * 0.5,
+            mid_tangent,
+            sine: sine.abs() * inverse_moved,
+            cosine: cosine * inverse_moved,
+            tangent: tangent.abs(),
+            secant: moved * inverse_cosine,
+            hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
+            path_curvature: bend.abs().max(ahead.bend_after) * inverse_moved,
+            chord_rest: moved * (bend.abs() * (lengths * REST[1] + REST[0]) + swerve * REST_PART)
+                + bend * bend * (sine.abs() * inverse_moved * of.length * REST_PART),
+        };
+        ahead.bend_after = V::ZERO;
+        let turned = ux * wy - uy * wx;
+        // Until the next station: the plan's chord turns there, and the unit ahead turns on the way.
+        let folding = ahead.turned - turned;
+        ahead.turned = turned;
+        self.joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
+        let change = (turned - self.turned[unit]).abs();
+        self.staged.note(unit, k, row::CURVATURE, tangent * of.inverse_length);
+        self.staged.note(unit, k, row::WAY2, step.advance * step.advance);
+        self.staged.note(unit, k, row::JERK, change.max(self.turned_change[unit]) * per_step2);
+        self.steps[unit] = step;
+        self.turned[unit] = turned;
+        self.turned_change[unit] = change;
+    }
+
     /// How much farther a hinge may fold between two head stations than at either: a part of the second difference, at this station or the
-    /// one before. It is an eighth, and a little more because sines of a step's turn are smaller than its angle. The course of the steer
-    /// axle is not at the chord's direction at stations, so the steering takes a quarter (docs/proof.md, section 10).
+    /// one before.
     #[inline(always)]
     fn overshoot(&mut self, unit: usize, folding: V) -> V {
         let change = (folding - self.folding[unit]).abs();
         let most = change.max(self.folding_change[unit]);
         self.folding[unit] = folding;
         self.folding_change[unit] = change;
-        most * if unit == 0 { 0.25 } else { 0.14 }
+        most * if unit == 0 { STEERING_OVERSHOOT } else { HINGE_OVERSHOOT }
     }
 
     /// Computes what curvature adds to the straight gains (docs/proof.md, section 5), and the hinge margins.
@@ -308,11 +273,75 @@ impl<V: Vector> Motion<V> {
     }
 }
 
-/// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, with an allowance of twice that).
-/// For t > 1, an angle over 90°, it is four radians, which no hinge allows.
+/// What a unit needs of what is ahead of it.
+struct Ahead<V> {
+    /// The heading of the unit ahead.
+    heading: [V; 2],
+    /// How far it turns until the next station, or the plan's chord there, radians.
+    turned: V,
+    /// How far the plan bends after the step, radians. Only the steer axle counts it: a plan may bend more after the step than before it,
+    /// above all at the corridor's first station.
+    bend_after: V,
+}
+
+impl<V: Vector> Ahead<V> {
+    /// The steer axle moves by `way`, then by `later`.
+    #[inline(always)]
+    fn of_the_steer_axle([vx, vy]: [V; 2], [later_x, later_y]: [V; 2]) -> Self {
+        let bend = (vx * later_y - vy * later_x) / (vx * vx + vy * vy + NO_WAY2);
+        Self { heading: [V::ZERO; 2], turned: bend, bend_after: bend.abs() }
+    }
+}
+
+/// A unit that is drawn along a chord of its coupling's path.
+struct Drawn<V> {
+    heading: [V; 2],
+    way: [V; 2],
+    /// Sine and cosine of the angle from the heading to the chord, times `moved`, the length of the chord.
+    sine: V,
+    cosine: V,
+    moved: V,
+    /// The heading at the chord's end.
+    turned: [V; 2],
+}
+
+impl<V: Vector> Drawn<V> {
+    /// The exact chord step: N/D = tan(β/2)·exp(−ℓ/L).
+    #[inline(always)]
+    fn along(of: &UnitLanes<V>, heading: [V; 2], way: [V; 2]) -> Self {
+        let ([ux, uy], [vx, vy]) = (heading, way);
+        let sine = ux * vy - uy * vx;
+        let cosine = ux * vx + uy * vy;
+        let moved = (vx * vx + vy * vy + NO_WAY2).sqrt();
+        let (pn, pd) = decay(moved * of.inverse_length);
+        let n = sine * pn;
+        let d = (moved + cosine).max(V::splat(NO_SUM)) * pd;
+        let (nn, dd, nd2) = (n * n, d * d, n * d * 2.0);
+        let norm = V::splat(1.0) / ((nn + dd) * moved);
+        let (c, s) = ((dd - nn) * norm, nd2 * norm);
+        Self { heading, way, sine, cosine, moved, turned: [vx * c + vy * s, vy * c - vx * s] }
+    }
+
+    /// The tangent of half the angle at the hinge ahead of a unit, of which `ahead` is the heading; for the prime mover, of half its
+    /// steering angle.
+    #[inline(always)]
+    fn half_tangent(&self, unit: usize, [ahead_x, ahead_y]: [V; 2]) -> V {
+        let [ux, uy] = self.heading;
+        let inverse = V::splat(1.0) / (self.moved * (self.moved + self.cosine));
+        if unit == 0 {
+            self.sine.abs() * (inverse * self.moved)
+        } else {
+            let cross = (ahead_x * uy - ahead_y * ux).abs();
+            let dot = ahead_x * ux + ahead_y * uy;
+            cross / (dot + 1.0).max(V::splat(NO_SUM))
+        }
+    }
+}
+
+/// 2·atan t for 0 ≤ t ≤ 1, never too small. For t > 1, an angle over 90°, it is four radians, which no hinge allows.
 #[inline(always)]
 fn double_atan<V: Vector>(t: V) -> V {
     let t2 = t * t;
-    let p = t * ((((t2 * 0.020_835_1 - 0.085_133_0) * t2 + 0.180_141_0) * t2 - 0.330_299_5) * t2 + 0.999_866_0);
-    (V::splat(1.0) - t).if_negative(V::splat(4.0), p * 2.0 + 4e-5)
+    let p = t * ((((t2 * ATAN[0] + ATAN[1]) * t2 + ATAN[2]) * t2 + ATAN[3]) * t2 + ATAN[4]);
+    (V::splat(1.0) - t).if_negative(V::splat(FOLDED_RAD), p * 2.0 + ATAN_ALLOWANCE)
 }

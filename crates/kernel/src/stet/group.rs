@@ -7,6 +7,8 @@ use super::step::UnitLanes;
 
 /// γ is stored in thousandths.
 pub(super) const SHRINK_STEPS: f64 = 1000.0;
+/// Length of the unit that stands in for one that a vehicle lacks, metres. Any length would do; nothing reads what it does.
+const STAND_IN_M: f64 = 5.0;
 
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
 pub(super) struct Group<'m, V> {
@@ -35,9 +37,9 @@ impl<'m, V: Vector> Group<'m, V> {
             };
             UnitLanes {
                 present: of(&|_, _| 1.0, 0.0),
-                length: of(&|u, _| u.length, 5.0),
-                inverse_length: of(&|u, _| 1.0 / u.length, 0.2),
-                reach: of(&|u, _| u.length + u.hitch, 5.0),
+                length: of(&|u, _| u.length, STAND_IN_M),
+                inverse_length: of(&|u, _| 1.0 / u.length, 1.0 / STAND_IN_M),
+                reach: of(&|u, _| u.length + u.hitch, STAND_IN_M),
                 hitch: of(&|u, _| u.hitch.abs(), 0.0),
                 ratio: of(&|u, _| u.hitch / u.length, 0.0),
                 sway: of(&|u, _| u.sway, 0.0),

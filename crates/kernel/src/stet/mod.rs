@@ -30,6 +30,7 @@ mod ride;
 mod run_in;
 mod shift;
 mod spans;
+mod steer;
 mod step;
 mod stretches;
 mod sweep;

@@ -15,6 +15,15 @@ pub(super) const MAX_POINTS: usize = 16;
 /// (`leeway`). It is exact on a steady circle, so closer points gain little.
 pub(super) const POINT_SPACING_M: f64 = 5.5;
 
+/// Dimensions of vehicles that the model takes, metres and radians. What is beyond is taken for an error of typing or of units.
+const MOST_TOLERANCE_M: f64 = 5.0;
+const MOST_COURSE_RAD: f64 = 1.5;
+const LENGTH_M: [f64; 2] = [0.2, 40.0];
+const MOST_HITCH_M: f64 = 20.0;
+const BODY_M: [f64; 2] = [0.1, 43.0];
+const WIDTH_M: [f64; 2] = [0.1, 10.0];
+const MOST_SWAY_RAD: f64 = 0.3;
+
 /// Why a vehicle cannot be certified.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -169,24 +178,24 @@ fn check(vehicle: &Vehicle) -> Result<(), ModelError> {
         Err(ModelError::Dimension { id: vehicle.id.clone(), unit, what, value })
     };
     let within = |value: f64, low: f64, high: f64| value >= low && value <= high;
-    if !within(vehicle.tracking_tolerance_m, 0.0, 5.0) {
+    if !within(vehicle.tracking_tolerance_m, 0.0, MOST_TOLERANCE_M) {
         return refuse(0, "tracking_tolerance_m", vehicle.tracking_tolerance_m);
     }
     if !within(vehicle.min_shrink, f64::MIN_POSITIVE, 1.0) {
         return refuse(0, "min_shrink", vehicle.min_shrink);
     }
-    if !within(vehicle.tracking_heading_rad, 0.0, 1.5) {
+    if !within(vehicle.tracking_heading_rad, 0.0, MOST_COURSE_RAD) {
         return refuse(0, "tracking_heading_rad", vehicle.tracking_heading_rad);
     }
     for (i, unit) in vehicle.units.iter().enumerate() {
         let length = unit.coupling_to_axle_m + unit.front_overhang_m + unit.rear_overhang_m;
         let bounds = [
-            ("coupling_to_axle_m", unit.coupling_to_axle_m, 0.2, 40.0),
-            ("hitch_offset_m", unit.hitch_offset_m, -unit.coupling_to_axle_m, 20.0),
-            ("body length", length, 0.1, 43.0),
-            ("width_m", unit.width_m, 0.1, 10.0),
+            ("coupling_to_axle_m", unit.coupling_to_axle_m, LENGTH_M[0], LENGTH_M[1]),
+            ("hitch_offset_m", unit.hitch_offset_m, -unit.coupling_to_axle_m, MOST_HITCH_M),
+            ("body length", length, BODY_M[0], BODY_M[1]),
+            ("width_m", unit.width_m, WIDTH_M[0], WIDTH_M[1]),
             ("max_articulation_rad", unit.max_articulation_rad, 0.0, std::f64::consts::PI),
-            ("sway_rad", unit.sway_rad, 0.0, 0.3),
+            ("sway_rad", unit.sway_rad, 0.0, MOST_SWAY_RAD),
         ];
         for (what, value, low, high) in bounds {
             if !within(value, low, high) {

@@ -21,6 +21,8 @@ use netcert_base::stop::Stop;
 
 /// Leeway beyond this scores nothing.
 const ENOUGH_M: f64 = 0.5;
+/// What is missing even at γ_min counts once with γ = 1, and this many times more.
+const MISSING_MORE: f64 = 2.0;
 /// Stations of the coarse track between two knots.
 const KNOT_STEP: usize = KNOT_STATIONS / 2;
 
@@ -158,7 +160,7 @@ fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) 
                 }
             }
         }
-        span.len() as f64 * (full + 2.0 * shrunk)
+        span.len() as f64 * (full + MISSING_MORE * shrunk)
     };
     spans.iter().map(worth).sum()
 }

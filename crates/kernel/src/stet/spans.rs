@@ -7,7 +7,7 @@ use netcert_base::leeway::known_m;
 
 pub(super) use netcert_base::leeway::NOTHING_M;
 
-use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
+use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
@@ -207,7 +207,7 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
     let mut hinge = hinge(track, model, span, full);
     let hinge_unit = if hinge < UNVISITED_M { ((hinge.to_bits() & TAG_MASK) >> 4) as usize } else { 0 };
     // If the bounds do not close while the vehicle is on the span, nothing is known of the span.
-    if hinge < 0.5 * NOT_CLOSED_RAD {
+    if hinge < BARELY_CLOSED_RAD {
         least = NOTHING_M;
     }
     // After a torn station nothing is known of the units until it no longer matters how they stood there.

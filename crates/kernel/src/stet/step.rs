@@ -8,6 +8,16 @@ pub(super) const MOST: f64 = 100.0;
 /// Largest curvature of a coupling's path times the coupling's deviation.
 const CURLED: f64 = 0.8;
 
+/// Largest angle between a unit's heading and its axle's motion (docs/proof.md, A3). The series of the tangent needs it.
+const MOST_SLIP_RAD: f64 = 0.6;
+/// In the series of tan x − x, this many x⁷ cover all terms from 17x⁷/315 on, up to [`MOST_SLIP_RAD`].
+const TANGENT_SEVENTH: f64 = 0.07;
+/// Each growth of a bound is less than the one before. This many times the last one covers the rest of a series that at least halves, and a
+/// little more.
+const REST_OF_SERIES: f64 = 1.5;
+/// Stands for the way of a vehicle that does not move in a denominator, metres.
+const NO_WAY_M: f64 = 1e-12;
+
 /// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
 #[derive(Clone, Copy)]
 pub(super) struct UnitLanes<V> {
@@ -102,7 +112,7 @@ impl<V: Vector> Filter<V> {
         Self {
             coupling: chord_bulge(&steps[0]),
             hitch_cosine: V::splat(1.0),
-            per_reference: V::splat(2.0) / (least + most).max(V::splat(1e-12)),
+            per_reference: V::splat(2.0) / (least + most).max(V::splat(NO_WAY_M)),
         }
     }
 
@@ -194,9 +204,7 @@ pub(super) fn heading<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, first_order:
     let first = implied_heading(of, step, first_order, axle, coupled);
     let second = implied_heading(of, step, first_order + first, axle, coupled);
     let third = implied_heading(of, step, first_order + second, axle, coupled);
-    // Each growth is less than the one before: this covers the rest of a series that at least halves, and a little
-    // more.
-    let more = third + (third - second) * 1.5;
+    let more = third + (third - second) * REST_OF_SERIES;
     let bound = first_order + more;
     (bound.min(V::splat(MOST)), more - implied_heading(of, step, bound, axle, coupled))
 }
@@ -253,12 +261,12 @@ impl<V: Vector> Straying<V> {
 }
 
 /// Negative where the bounds do not hold. They hold while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and while A + σ ≤
-/// 0.6, which the series of the tangent needs. They hold while the coupling's deviation is less than the radius of its path;
+/// [`MOST_SLIP_RAD`], which the series of the tangent needs. They hold while the coupling's deviation is less than the radius of its path;
 /// beyond, the deviating coupling would turn back. [`CURLED`] leaves room for what the path bends more between stations.
 #[inline(always)]
 pub(super) fn validity<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, a: V, coupling: V) -> V {
     let slip = a + of.sway;
-    (step.cosine - slip).min(V::splat(0.6) - slip).min(V::splat(CURLED) - step.path_curvature * coupling)
+    (step.cosine - slip).min(V::splat(MOST_SLIP_RAD) - slip).min(V::splat(CURLED) - step.path_curvature * coupling)
 }
 
 /// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by
@@ -287,9 +295,9 @@ pub(super) fn decay<V: Vector>(x: V) -> (V, V) {
     (n * n, d * d)
 }
 
-/// tan x − x for 0 ≤ x ≤ 0.6, never too small.
+/// tan x − x for 0 ≤ x ≤ [`MOST_SLIP_RAD`], never too small.
 #[inline(always)]
 fn slip_tangent_excess<V: Vector>(x: V) -> V {
     let x2 = x * x;
-    x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
+    x * x2 * ((x2 * TANGENT_SEVENTH + 2.0 / 15.0) * x2 + 1.0 / 3.0)
 }

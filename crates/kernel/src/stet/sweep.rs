@@ -9,15 +9,16 @@ use std::cell::RefCell;
 use std::cmp::Reverse;
 
 use super::adjoint::{self, Histories, Refined, Trail, first_loose};
-use super::block::{BLOCK, FIELDS, Minima, NOT_CLOSED_RAD};
+use super::block::{BARELY_CLOSED_RAD, BLOCK, FIELDS, Minima};
 use super::body::{self, Body};
-use super::drive::{Motion, SteerPaths, drive};
+use super::drive::{Motion, drive};
 use super::group::Group;
 use super::lanes::{LANES, Vector, on_widest};
 use super::leeway;
 use super::model::MAX_UNITS;
 use super::ride::{Refining, Ride};
 use super::spans;
+use super::steer::SteerPaths;
 use netcert_base::stop::Stop;
 use netcert_base::watch;
 
@@ -192,7 +193,7 @@ impl<'r> Lane<'r> {
     fn open_ended(&self) -> bool {
         let steps = self.head - BLOCK..self.head;
         let mut hinges = self.minima.hinge[steps.clone()].iter().zip(steps);
-        hinges.any(|(&hinge, k)| hinge < 0.5 * NOT_CLOSED_RAD && self.minima.counted.contains(&k))
+        hinges.any(|(&hinge, k)| hinge < BARELY_CLOSED_RAD && self.minima.counted.contains(&k))
     }
 
     fn finish(mut self) -> Minima {

@@ -18,6 +18,14 @@ pub(super) const BULGE_MOST: f64 = 0.005;
 /// Half-widths are read by a station's slope up to this far from it, metres. Nothing is certified farther away.
 pub(super) const READ_M: f64 = 6.0;
 
+/// Excesses up to this (per metre and per square metre) and dips up to that (1/m) are rounding errors.
+const ROUNDING: f64 = 1e-9;
+const DIP_ROUNDING: f64 = 1e-6;
+
+/// The end's half-width goes on over a body gap and this many stations: half of one because a foot may be half a station from its point,
+/// and one because they are counted from one.
+const END_STATIONS: f64 = 1.5;
+
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
 
@@ -213,8 +221,7 @@ fn excess(widths: &[f64], spacing: f64, slopes: &[f64]) -> (Vec<f64>, Vec<f64>) 
             q.iter_mut().zip(&e).zip(over).for_each(|((q, e), over)| *q = q.max((over - e) * rest));
         }
     }
-    // Values up to 1e-9 are rounding errors.
-    e.iter_mut().chain(&mut q).for_each(|x| *x = if *x > 1e-9 { *x } else { 0.0 });
+    e.iter_mut().chain(&mut q).for_each(|x| *x = if *x > ROUNDING { *x } else { 0.0 });
     (e, q)
 }
 
@@ -239,8 +246,7 @@ fn bulge(left: &[f64], right: &[f64], spacing: f64) -> Vec<f64> {
     let mut out = vec![0.0; left.len()];
     for k in 0..left.len() {
         let dip = left[k].max(right[k]) / (spacing * spacing);
-        // Dips up to 1e-6 1/m are rounding errors.
-        if dip > 1e-6 {
+        if dip > DIP_ROUNDING {
             let end = (k + around + 1).min(out.len());
             for o in &mut out[k.saturating_sub(around)..end] {
                 *o = dip.max(*o);
@@ -269,7 +275,7 @@ impl Places {
         let (h, last) = (corridor.spacing_m, corridor.len() - 1);
         // A side that straddles an end is bounded by both its points, so the end's half-width continues under the point
         // beyond.
-        let under = (0..lead).take_while(|&k| (k + 1) as f64 * h <= MOST_GAP_M + 1.5 * h).count();
+        let under = (0..lead).take_while(|&k| (k + 1) as f64 * h <= MOST_GAP_M + END_STATIONS * h).count();
         let bounded = lead - under..(lead + last + under + 1).min(total);
         let mut places = Self {
             x: vec![0.0; total],

@@ -2,13 +2,14 @@
 
 use super::adjoint::{Histories, Refined, close, first_loose, refine};
 use super::block::{BLOCK, FIELDS, row};
-use super::drive::{Motion, SteerPaths, drive};
+use super::drive::{Motion, drive};
 use super::group::Group;
 use super::lanes::{LANES, Vector, on_widest};
 use super::model::Model;
 use super::reach::Reach;
 use super::results::Certificate;
 use super::ride::{Ride, Wanted};
+use super::steer::SteerPaths;
 use super::step::MOST;
 use super::track::Track;
 use netcert_base::corridor::Corridor;

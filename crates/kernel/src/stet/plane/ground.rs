@@ -10,10 +10,16 @@ pub(super) type Point = [f64; 2];
 const CELL_M: f64 = 3.0;
 /// No place of a cell is farther from its middle, metres: half of its diagonal and an allowance for rounding.
 const HALF_CELL_M: f64 = 0.5 * CELL_M * std::f64::consts::SQRT_2 + 1e-6;
+/// The grid begins this much before the boundary and [`FAR_M`]. These are no round numbers, so a cell's corner hardly ever lies on a
+/// boundary drawn in round numbers.
+const ORIGIN_M: Point = [0.137_421, 0.211_973];
 /// Distances up to this are exact, metres. Beyond it a place just has at least this much room.
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
 const MOST_CELLS: usize = 1 << 20;
+/// Distances below this have no direction, metres; and their square.
+const TOUCHING_M: f64 = 1e-9;
+const TOUCHING_M2: f64 = 1e-18;
 /// A rough room is enough if it leaves this much more than what is enough, metres: the piece soon needs a better one otherwise.
 const SPARE_M: f64 = 0.2;
 /// Segments that share a box.
@@ -40,7 +46,7 @@ impl Swept<'_> {
     fn unslid(&self) -> ([Point; 2], [Point; 2], f64) {
         let (mut before, mut after) = (self.before, self.after);
         let unit = |piece: [Point; 2]| {
-            let length = apart(piece[0], piece[1]).max(1e-9);
+            let length = apart(piece[0], piece[1]).max(TOUCHING_M);
             [0, 1].map(|k| (piece[0][k] - piece[1][k]) / length)
         };
         let (u, v) = (unit(before), unit(after));
@@ -57,7 +63,7 @@ impl Swept<'_> {
     /// Most that the piece may come closer to what is `gap` away from it, in metres and direction. An end that is farther back may
     /// move more.
     fn stray_towards(&self, gap: Point, far: f64) -> f64 {
-        if far < 1e-9 {
+        if far < TOUCHING_M {
             return self.most;
         }
         let towards = [gap[0] / far, gap[1] / far];
@@ -105,8 +111,7 @@ impl Ground {
                 (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
             }
         }
-        // The offsets are no round numbers, so a cell's corner hardly ever lies on a boundary drawn in round numbers.
-        let origin = [low[0] - FAR_M - 0.137_421, low[1] - FAR_M - 0.211_973];
+        let origin = [low[0] - FAR_M - ORIGIN_M[0], low[1] - FAR_M - ORIGIN_M[1]];
         let cells = |k: usize| ((high[k] + FAR_M - origin[k]) / CELL_M).ceil() + 1.0;
         if segments.is_empty() || cells(0) * cells(1) > MOST_CELLS as f64 {
             return None;
@@ -411,7 +416,7 @@ struct Segment {
 impl Segment {
     fn new([a, b]: [Point; 2]) -> Self {
         let along = [b[0] - a[0], b[1] - a[1]];
-        Self { a, b, along, inverse: 1.0 / (along[0] * along[0] + along[1] * along[1]).max(1e-18) }
+        Self { a, b, along, inverse: 1.0 / (along[0] * along[0] + along[1] * along[1]).max(TOUCHING_M2) }
     }
 
     /// Square of the distance of a place.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
-use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, row};
+use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, row};
 use super::body::{Body, FRESH, Point as BodyPoint, least};
 use super::lanes::{LANES, tagged};
 use super::track::Track;
@@ -30,6 +30,13 @@ const FAR_OUTSIDE_M: f64 = -300.0;
 const SAME_M: f64 = 1e-9;
 /// Directions at a smaller sine to the heading meet the axis too far away.
 const OBLIQUE: f64 = 0.05;
+/// A function lies above its chord over a step, less this share of its second derivative times the square of the step.
+const CHORD: f64 = 0.125;
+/// Stands for a gap of zero in a denominator, metres.
+const NO_GAP_M: f64 = 1e-9;
+/// A foot goes on to the next station when its point is farther than this share of the spacing: the middle, and a little more, so that
+/// rounding does not send it to and fro.
+const PAST_MIDDLE: f64 = 0.55;
 /// Most stations walked to find the foot of a body point.
 const MOST_STEPS: usize = 16;
 
@@ -221,7 +228,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                     (*from, *to) = ((*from).min(foot as u32), (*to).max(foot as u32));
                 }
             }
-            let closes = block[row::HINGE * BLOCK + k] > 0.5 * NOT_CLOSED_RAD;
+            let closes = block[row::HINGE * BLOCK + k] > BARELY_CLOSED_RAD;
             if let Some(before) = body.stood.take().filter(|before| before.head + 1 == station)
                 && track.areas.over(before.head)
                 && !minima.bare
@@ -423,7 +430,7 @@ impl<'a> Passage<'a> {
         }
         let index = (1..last).find(|&index| points[index].spot.ahead <= ahead).unwrap_or(last);
         let behind = &points[index];
-        let share = (ahead - behind.spot.ahead) / behind.gap.max(1e-9);
+        let share = (ahead - behind.spot.ahead) / behind.gap.max(NO_GAP_M);
         self.across[index] + (self.across[index - 1] - self.across[index]) * share
     }
 
@@ -459,7 +466,7 @@ impl<'a> Passage<'a> {
     fn sag(&self, ahead: f64) -> f64 {
         let lever = ahead.abs() + self.half_width;
         let uneven = self.before.jerk.max(self.after.jerk) * self.way * self.way;
-        0.125 * BETWEEN * (self.way * self.turn + lever * (self.turn * self.turn + uneven))
+        CHORD * BETWEEN * (self.way * self.turn + lever * (self.turn * self.turn + uneven))
     }
 
     /// Room and leeway of a piece that has these ends at both stations: the greatest over the areas.
@@ -613,9 +620,9 @@ fn walked(track: &Track, foot: usize, [x, y]: Point) -> usize {
     let along = |k: usize| (x - f.x[k]) * f.tangent_x[k] + (y - f.y[k]) * f.tangent_y[k];
     for _ in 0..MOST_STEPS {
         let away = along(k);
-        if away > 0.55 * track.spacing && k < last {
+        if away > PAST_MIDDLE * track.spacing && k < last {
             k += 1;
-        } else if away < -0.55 * track.spacing && k > 0 {
+        } else if away < -PAST_MIDDLE * track.spacing && k > 0 {
             k -= 1;
         } else {
             break;
