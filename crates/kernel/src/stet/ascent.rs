@@ -13,11 +13,12 @@
 
 use super::block::{Minima, UNVISITED_M};
 use super::group::gamma;
-use super::lanes::{TAG_MASK, Vector, by_instruction_set};
+use super::lanes::{Vector, by_instruction_set};
 use super::model::Model;
 use super::reach::Reach;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
+use super::tag::{carried, unit_and_point};
 use super::track::Track;
 
 /// How an ascent proceeds.
@@ -50,7 +51,7 @@ const FAR_M: f64 = 0.4;
 /// The leeway to one edge at one body point, in the linear response.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Unit and point, as in [`super::lanes::tagged`].
+    /// Unit and point.
     tag: u64,
     /// Knot of the point's foot.
     foot: u32,
@@ -123,7 +124,7 @@ impl Ascent {
             for left in [true, false] {
                 let least = least_at(coarse, minima, foot, left);
                 if least < UNVISITED_M {
-                    let row = self.row(model, least.to_bits() & TAG_MASK, foot, left);
+                    let row = self.row(model, carried(least), foot, left);
                     rows.push(Row { leeway: least - self.response.change(&row.pull(0.0)), ..row });
                 }
             }
@@ -138,7 +139,7 @@ impl Ascent {
     }
 
     fn row(&self, model: &Model, tag: u64, foot: usize, left: bool) -> Row {
-        let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
+        let (unit, point) = unit_and_point(tag);
         let of = &model.units[unit];
         let ahead = of.points[point];
         let behind: f64 = model.units[..unit].iter().map(|u| u.length + u.hitch).sum();
@@ -262,7 +263,8 @@ impl Row {
 
 /// Leeway that SHRINK can add at a tagged body point, metres.
 pub(super) fn relief(model: &Model, tag: u64) -> f64 {
-    let gain = model.units[(tag >> 4) as usize].at[(tag & 15) as usize];
+    let (unit, point) = unit_and_point(tag);
+    let gain = model.units[unit].at[point];
     gain.tracking * model.vehicle.tracking_tolerance_m * (1.0 - gamma(model, 0.0))
 }
 

@@ -101,7 +101,7 @@ impl Feet {
 /// Least leeways and margins at every extended station, for one vehicle.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Minima {
-    /// Tagged (see [`super::lanes::tagged`]) with `unit · 16 + point`.
+    /// Tagged with their unit and point ([`super::tag`]).
     pub(super) left: Vec<f64>,
     pub(super) right: Vec<f64>,
     /// As `left` and `right`, for sides between two of their points; at marked stations only.

@@ -6,6 +6,7 @@ use super::group::gamma;
 use super::lanes::{LANES, Vector, tagged};
 use super::model::Model;
 use super::plane::{Rooms, Stand};
+use super::tag::tag;
 use super::track::{Fields, Track};
 
 /// A foot farther along than this (metres) is searched again.
@@ -142,7 +143,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 };
                 Point {
                     spot,
-                    tag: (index * 16 + p) as u64,
+                    tag: tag(index, p),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: start,
                     way: way(unit.points[p]),

@@ -35,6 +35,7 @@ mod step;
 mod stretches;
 mod sweep;
 mod swept;
+mod tag;
 mod track;
 mod tube;
 

@@ -9,12 +9,13 @@ use std::ops::Range;
 
 use super::ascent::{Ascent, climb, relief};
 use super::block::{Minima, UNVISITED_M};
-use super::lanes::{TAG_MASK, on_widest};
+use super::lanes::on_widest;
 use super::model::Model;
 use super::ride::{Ride, Wanted};
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
 use super::sweep::sweep;
+use super::tag::carried;
 use super::track::Track;
 use netcert_base::corrections::Options;
 use netcert_base::stop::Stop;
@@ -156,7 +157,7 @@ fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) 
             for least in [minima.left[k], minima.right[k]] {
                 full = full.min(least);
                 if least < 0.0 {
-                    shrunk = shrunk.min(least + relief(model, least.to_bits() & TAG_MASK));
+                    shrunk = shrunk.min(least + relief(model, carried(least)));
                 }
             }
         }

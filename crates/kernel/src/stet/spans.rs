@@ -9,9 +9,9 @@ pub(super) use netcert_base::leeway::NOTHING_M;
 
 use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
-use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
 use super::results::{Limiting, SpanResult};
+use super::tag::{carried, unit_and_point};
 use super::track::Track;
 
 /// Stations that a span takes beyond each end. A foot moves up to two stations per station of the steer axle, rounding
@@ -205,7 +205,7 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
         half_width = half_width.min(track.fields.left[k].min(track.fields.right[k]));
     }
     let mut hinge = hinge(track, model, span, full);
-    let hinge_unit = if hinge < UNVISITED_M { ((hinge.to_bits() & TAG_MASK) >> 4) as usize } else { 0 };
+    let hinge_unit = if hinge < UNVISITED_M { unit_and_point(carried(hinge)).0 } else { 0 };
     // If the bounds do not close while the vehicle is on the span, nothing is known of the span.
     if hinge < BARELY_CLOSED_RAD {
         least = NOTHING_M;
@@ -237,8 +237,7 @@ fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f6
 
 /// The place of a tagged leeway at an extended station.
 fn place(track: &Track, model: &Model, foot: Foot, side: Side, leeway: f64) -> Limiting {
-    let tag = leeway.to_bits() & TAG_MASK;
-    let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
+    let (unit, point) = unit_and_point(carried(leeway));
     let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
     let station = foot.station.saturating_sub(track.lead).min(track.count - 1);
     Limiting { station, unit, side, point_m, in_area: foot.in_area }

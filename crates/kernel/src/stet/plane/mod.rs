@@ -14,11 +14,10 @@ use netcert_base::corridor::{Area, AreaSpan, Corridor};
 use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, row};
 use super::body::{Body, FRESH, Point as BodyPoint, least};
 use super::lanes::{LANES, tagged};
+use super::model::MAX_POINTS;
 use super::track::Track;
 use ground::{Ground, Point, Swept};
 
-/// Most body points of a unit.
-const MOST_POINTS: usize = 16;
 /// Sides are covered in pieces no longer than this, metres. The hull of a piece over a step is little larger than what the piece
 /// sweeps.
 const PIECE_M: f64 = 1.4;
@@ -138,7 +137,7 @@ pub(super) struct Stand {
     way: f64,
     jerk: f64,
     /// Bounds of how far each body point is off across the nominal heading, to first order, metres; and of the heading, radians.
-    across: [f64; MOST_POINTS],
+    across: [f64; MAX_POINTS],
     turned: f64,
 }
 
@@ -154,7 +153,7 @@ impl Stand {
         let (extra_axle, extra_coupling, remainder) =
             (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING), at(row::REMAINDER));
         let a = (extra_axle + extra_coupling) * body.inverse_length + body.heading + remainder;
-        let mut across = [0.0; MOST_POINTS];
+        let mut across = [0.0; MAX_POINTS];
         for (index, point) in body.points.iter().enumerate() {
             let spot = &point.spot;
             let first_order = if REFINED {
@@ -209,7 +208,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
     alone: bool,
     minima: &mut Minima,
 ) {
-    let mut feet = [0; MOST_POINTS];
+    let mut feet = [0; MAX_POINTS];
     for (foot, point) in feet.iter_mut().zip(&body.points) {
         *foot = point.foot;
     }
@@ -367,7 +366,7 @@ struct Passage<'a> {
     turn: f64,
     way: f64,
     /// The greater ones of both stations' bounds.
-    across: [f64; MOST_POINTS],
+    across: [f64; MAX_POINTS],
     heading: f64,
     /// Most that any place of the body may move in any direction, what it leaves its straight line by included.
     most: f64,
@@ -573,7 +572,7 @@ fn moved(before: [Point; 2], after: [Point; 2]) -> f64 {
 }
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
-fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MOST_POINTS], minima: &mut Minima) {
+fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MAX_POINTS], minima: &mut Minima) {
     if track.areas.count(stand.head, stand.head).next().is_none() {
         return;
     }
