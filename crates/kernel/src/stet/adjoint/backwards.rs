@@ -36,20 +36,21 @@ struct Kernels<V> {
 }
 
 impl<V: Vector> Kernels<V> {
-    /// The kernels of a unit's outputs at the station itself, and what the inputs there add to the outputs at once: couplings pass a
-    /// deviation on without lag.
+    const NONE: Self = Self { mu: [V::ZERO; MAX_UNITS], sources: [V::ZERO; MAX_UNITS], older: [V::ZERO; MAX_UNITS] };
+
+    /// Takes a unit's outputs at the station itself. Returns what the inputs there add to them at once: couplings pass a deviation on
+    /// without lag.
     #[inline(always)]
-    fn folded(outputs: &Outputs<V>, unit: usize, now: &[Past], steer: f64) -> (Self, V) {
-        let mut mu = [V::ZERO; MAX_UNITS];
-        mu[unit] = outputs.axle;
+    fn fold(&mut self, outputs: &Outputs<V>, unit: usize, now: &[Past], steer: f64) -> V {
+        self.mu[unit] = outputs.axle;
         let mut nu = outputs.coupling * now[unit].secant;
         let mut bound = V::ZERO;
         for j in (0..unit).rev() {
             bound = bound + nu.abs() * now[j].hitch;
-            mu[j] = nu * now[j].couple;
+            self.mu[j] = nu * now[j].couple;
             nu = nu * -now[j].pass;
         }
-        (Self { mu, sources: [V::ZERO; MAX_UNITS], older: [V::ZERO; MAX_UNITS] }, bound + nu.abs() * steer)
+        bound + nu.abs() * steer
     }
 
     /// What the inputs at the station itself add per station.
@@ -132,7 +133,8 @@ impl<V: Vector> Trail<'_, V> {
         let histories = &self.histories[lane];
         let now = histories[0].at(station);
         let steer = histories[0].steer[station % MEMORY];
-        let (mut kernels, bound) = Kernels::folded(outputs, unit, now, steer);
+        let mut kernels = Kernels::NONE;
+        let bound = kernels.fold(outputs, unit, now, steer);
         let last = kernels.begin(unit, now, steer);
         let mut sum = Sum { bound, last, before_last: last };
 
@@ -175,7 +177,7 @@ impl<V: Vector> Trail<'_, V> {
         if at <= self.block_start() {
             for longer in 1..STRIDES.len() {
                 let step = STRIDES[longer];
-                let whole = station - at >= STRIDE_AFTER[longer] && at % step == 0 && at >= floor + step;
+                let whole = station - at >= STRIDE_AFTER[longer] && at.is_multiple_of(step) && at >= floor + step;
                 if whole && histories[longer].closed[(at - step) % MEMORY] {
                     stride = longer;
                 }

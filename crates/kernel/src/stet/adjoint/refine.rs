@@ -107,14 +107,14 @@ impl<V: Vector> Trail<'_, V> {
             beside: Filter::begin(&group.chain[..group.units], at.steps),
             closes: true,
         };
-        for unit in 0..group.models[lane].units.len() {
-            let filtered = passed.beside.coupled(&group.chain[unit], &at.steps[unit], extra[unit]);
+        for (unit, extra) in extra.iter_mut().enumerate().take(group.models[lane].units.len()) {
+            let filtered = passed.beside.coupled(&group.chain[unit], &at.steps[unit], *extra);
             let grown = if unit < first_unit {
                 self.keep_filter(at, unit, filtered, rows, &mut passed)
             } else {
                 self.refine_unit(at, unit, filtered, rows, &mut out.points[unit], &mut passed)
             };
-            extra[unit].set(lane, grown.lane(lane));
+            extra.set(lane, grown.lane(lane));
         }
         self.histories[lane][0].closed[station % MEMORY] = passed.closes;
     }
