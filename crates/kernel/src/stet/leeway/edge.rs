@@ -86,8 +86,10 @@ by_instruction_set! {
 #[inline(always)]
 fn aside<V: Vector>(track: &Track, feet: Feet, s: &States<V>, [ahead, left]: [f64; 2], edge: &Edge<V>) -> Seen<V> {
     let on = edge.on.array();
-    let own: [usize; LANES] =
-        std::array::from_fn(|i| moved(feet.station(i), on[i] / track.spacing).min(track.len() - 1));
+    let mut own = [0; LANES];
+    for (i, own) in own.iter_mut().enumerate() {
+        *own = moved(feet.station(i), on[i] / track.spacing).min(track.len() - 1);
+    }
     let (x, y) = s.beside(ahead, left);
     place(track.fields.gather(&own), x, y)
 }

@@ -3,6 +3,8 @@
 use netcert_base::corridor::Area;
 use netcert_base::watch;
 
+/// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
+pub(super) const FAR_OUTSIDE_M: f64 = -300.0;
 /// A place in the plane, metres.
 pub(super) type Point = [f64; 2];
 
@@ -400,6 +402,7 @@ fn crossing(a: Point, b: Point, y: f64) -> f64 {
     a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
 }
 
+#[inline]
 pub(super) fn apart(a: Point, b: Point) -> f64 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
