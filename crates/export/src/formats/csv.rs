@@ -2,45 +2,34 @@
 
 use std::io::{self, Write};
 
-use super::layers::asked;
-use super::{Options, Target, one_file_a_layer};
-use crate::rows::{Cell, Column};
-use crate::{ExportError, Layout, Place, Source};
+use super::layer_files::{LayerFormat, Table};
+use super::layers::Row;
+use crate::rows::Cell;
+use crate::{ExportError, Sink};
 
 /// `csv`
-pub(super) struct Csv;
-
-impl Target for Csv {
-    fn name(&self) -> &'static str {
-        "csv"
-    }
-
-    fn about(&self) -> &'static str {
-        "edges and turns with all certificate columns, as tables"
-    }
-
-    fn layout(&self, options: &Options) -> Layout {
-        one_file_a_layer(self.name(), options)
-    }
-
-    fn has_columns(&self) -> bool {
-        true
-    }
-
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        for layer in asked(options) {
-            let mut sink = place.create(&format!("{}.csv", layer.name()))?;
-            head(&mut sink, &layer.columns(source))?;
-            layer.each(source, |row| Ok(line(&mut sink, row.cells)?))?;
-            sink.close()?;
-        }
-        Ok(())
-    }
+pub(super) struct Csv {
+    sink: Sink,
 }
 
-fn head(out: &mut dyn Write, columns: &[Column]) -> io::Result<()> {
-    let names: Vec<&str> = columns.iter().map(|column| column.0).collect();
-    write!(out, "{}\r\n", names.join(","))
+impl LayerFormat for Csv {
+    const NAME: &'static str = "csv";
+    const ABOUT: &'static str = "edges and turns with all certificate columns, as tables";
+    const ENDING: &'static str = "csv";
+
+    fn open(table: &Table<'_>, mut sink: Sink) -> Result<Self, ExportError> {
+        let names: Vec<&str> = table.columns.iter().map(|column| column.0).collect();
+        write!(sink, "{}\r\n", names.join(","))?;
+        Ok(Self { sink })
+    }
+
+    fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
+        Ok(line(&mut self.sink, row.cells)?)
+    }
+
+    fn close(self, _: &Table<'_>) -> Result<(), ExportError> {
+        self.sink.close()
+    }
 }
 
 fn line(out: &mut dyn Write, cells: &[Cell<'_>]) -> io::Result<()> {

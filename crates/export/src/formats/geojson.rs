@@ -5,87 +5,69 @@
 
 use std::io::{self, Write};
 
-use super::layers::{Row, asked};
-use super::{Options, Target, one_file_a_layer};
+use super::layer_files::{LayerFormat, Table};
+use super::layers::Row;
 use crate::osm::LonLat;
 use crate::rows::{Cell, Column};
-use crate::{ExportError, Layout, Place, Source};
+use crate::{ExportError, Sink};
 
 /// `geojson`
-pub(super) struct GeoJson;
+pub(super) struct GeoJson {
+    sink: Sink,
+    /// What stands before the next feature.
+    between: &'static str,
+}
+
+impl LayerFormat for GeoJson {
+    const NAME: &'static str = "geojson";
+    const ABOUT: &'static str = "edges and turns with all certificate columns, as GeoJSON";
+    const ENDING: &'static str = "geojson";
+
+    fn open(table: &Table<'_>, mut sink: Sink) -> Result<Self, ExportError> {
+        let (name, header) = (table.layer.name(), table.source.header.json());
+        write!(sink, "{{\"type\":\"FeatureCollection\",\"name\":\"{name}\",\"netcert\":{header},\"features\":[")?;
+        Ok(Self { sink, between: "\n" })
+    }
+
+    fn row(&mut self, table: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
+        self.sink.write_all(self.between.as_bytes())?;
+        self.between = ",\n";
+        Ok(feature(&mut self.sink, &table.columns, row, None)?)
+    }
+
+    fn close(mut self, _: &Table<'_>) -> Result<(), ExportError> {
+        self.sink.write_all(b"\n]}\n")?;
+        self.sink.close()
+    }
+}
 
 /// `geojsonseq`
-pub(super) struct GeoJsonSeq;
+pub(super) struct GeoJsonSeq {
+    sink: Sink,
+    /// The header, until the first feature has it.
+    header: Option<String>,
+}
 
 /// The first byte of each text in a sequence (RFC 8142, section 2).
 const RECORD_SEPARATOR: u8 = 0x1e;
 
-impl Target for GeoJson {
-    fn name(&self) -> &'static str {
-        "geojson"
+impl LayerFormat for GeoJsonSeq {
+    const NAME: &'static str = "geojsonseq";
+    const ABOUT: &'static str = "the same as a sequence of GeoJSON texts, one feature a line";
+    const ENDING: &'static str = "geojsons";
+
+    fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
+        Ok(Self { sink, header: Some(table.source.header.json().to_string()) })
     }
 
-    fn about(&self) -> &'static str {
-        "edges and turns with all certificate columns, as GeoJSON"
+    fn row(&mut self, table: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
+        self.sink.write_all(&[RECORD_SEPARATOR])?;
+        feature(&mut self.sink, &table.columns, row, self.header.take().as_deref())?;
+        Ok(self.sink.write_all(b"\n")?)
     }
 
-    fn layout(&self, options: &Options) -> Layout {
-        one_file_a_layer(self.name(), options)
-    }
-
-    fn has_columns(&self) -> bool {
-        true
-    }
-
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        for layer in asked(options) {
-            let mut sink = place.create(&format!("{}.geojson", layer.name()))?;
-            let (name, header) = (layer.name(), source.header.json());
-            write!(sink, "{{\"type\":\"FeatureCollection\",\"name\":\"{name}\",\"netcert\":{header},\"features\":[")?;
-            let columns = layer.columns(source);
-            let mut between = "\n";
-            layer.each(source, |row| {
-                sink.write_all(between.as_bytes())?;
-                between = ",\n";
-                Ok(feature(&mut sink, &columns, row, None)?)
-            })?;
-            sink.write_all(b"\n]}\n")?;
-            sink.close()?;
-        }
-        Ok(())
-    }
-}
-
-impl Target for GeoJsonSeq {
-    fn name(&self) -> &'static str {
-        "geojsonseq"
-    }
-
-    fn about(&self) -> &'static str {
-        "the same as a sequence of GeoJSON texts, one feature a line"
-    }
-
-    fn layout(&self, options: &Options) -> Layout {
-        one_file_a_layer(self.name(), options)
-    }
-
-    fn has_columns(&self) -> bool {
-        true
-    }
-
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        for layer in asked(options) {
-            let mut sink = place.create(&format!("{}.geojsons", layer.name()))?;
-            let columns = layer.columns(source);
-            let mut header = Some(source.header.json().to_string());
-            layer.each(source, |row| {
-                sink.write_all(&[RECORD_SEPARATOR])?;
-                feature(&mut sink, &columns, row, header.take().as_deref())?;
-                Ok(sink.write_all(b"\n")?)
-            })?;
-            sink.close()?;
-        }
-        Ok(())
+    fn close(self, _: &Table<'_>) -> Result<(), ExportError> {
+        self.sink.close()
     }
 }
 

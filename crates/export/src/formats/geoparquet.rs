@@ -16,14 +16,11 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
-use super::layers::{Row, asked};
-use super::{Options, Target, one_file_a_layer};
+use super::layer_files::{LayerFormat, Table};
+use super::layers::Row;
 use crate::osm::LonLat;
 use crate::rows::{self, Bounds, Cell, Kind};
-use crate::{ExportError, Layout, Place, Sink, Source};
-
-/// `geoparquet`
-pub(super) struct GeoParquet;
+use crate::{ExportError, Sink};
 
 /// Rows per group. A group of edges takes some 8 MB.
 const GROUP_ROWS: usize = 1 << 14;
@@ -31,37 +28,8 @@ const GROUP_ROWS: usize = 1 << 14;
 /// The sides of the box, in the order of its columns.
 const SIDES: [&str; 4] = ["xmin", "ymin", "xmax", "ymax"];
 
-impl Target for GeoParquet {
-    fn name(&self) -> &'static str {
-        "geoparquet"
-    }
-
-    fn about(&self) -> &'static str {
-        "edges and turns with all certificate columns, as GeoParquet 1.1"
-    }
-
-    fn layout(&self, options: &Options) -> Layout {
-        one_file_a_layer(self.name(), options)
-    }
-
-    fn has_columns(&self) -> bool {
-        true
-    }
-
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        for layer in asked(options) {
-            let columns = layer.columns(source);
-            let sink = place.create(&format!("{}.parquet", layer.name()))?;
-            let mut file = Table::create(schema(layer.name(), &columns).map_err(failed)?, &columns, sink)?;
-            layer.each(source, |row| file.push(row))?;
-            file.close(&columns, &source.header.json().to_string())?;
-        }
-        Ok(())
-    }
-}
-
-/// A file that is being written.
-struct Table {
+/// `geoparquet`
+pub(super) struct GeoParquet {
     writer: SerializedFileWriter<Vec<u8>>,
     sink: Sink,
     group: Vec<Column>,
@@ -70,19 +38,24 @@ struct Table {
     bounds: Option<Bounds>,
 }
 
-impl Table {
-    fn create(schema: Type, columns: &[rows::Column], sink: Sink) -> Result<Self, ExportError> {
+impl LayerFormat for GeoParquet {
+    const NAME: &'static str = "geoparquet";
+    const ABOUT: &'static str = "edges and turns with all certificate columns, as GeoParquet 1.1";
+    const ENDING: &'static str = "parquet";
+
+    fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
+        let schema = schema(table.layer.name(), &table.columns).map_err(failed)?;
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())
             .build();
         let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties));
-        let group = columns.iter().map(|column| Column::of(column.1)).collect();
+        let group = table.columns.iter().map(|column| Column::of(column.1)).collect();
         let (lines, boxes) = (Vec::new(), Default::default());
         Ok(Self { writer: writer.map_err(failed)?, sink, group, lines, boxes, bounds: None })
     }
 
-    fn push(&mut self, row: &Row<'_>) -> Result<(), ExportError> {
+    fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
         self.group.iter_mut().zip(row.cells).for_each(|(column, cell)| column.push(cell));
         self.lines.push(wkb(row.line).into());
         if let Some(around) = Bounds::around(row.line.iter().copied()) {
@@ -93,6 +66,21 @@ impl Table {
         if self.lines.len() >= GROUP_ROWS { self.end_group() } else { Ok(()) }
     }
 
+    fn close(mut self, table: &Table<'_>) -> Result<(), ExportError> {
+        if !self.lines.is_empty() {
+            self.end_group()?;
+        }
+        let header = table.source.header.json().to_string();
+        let pandas = metadata::pandas(&table.columns);
+        for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header), ("pandas", pandas)] {
+            self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
+        }
+        self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
+        self.sink.close()
+    }
+}
+
+impl GeoParquet {
     fn end_group(&mut self) -> Result<(), ExportError> {
         self.write_group().map_err(failed)?;
         self.writer.flush()?;
@@ -122,18 +110,6 @@ impl Table {
         }
         group.close()?;
         Ok(())
-    }
-
-    fn close(mut self, columns: &[rows::Column], header: &str) -> Result<(), ExportError> {
-        if !self.lines.is_empty() {
-            self.end_group()?;
-        }
-        let pandas = metadata::pandas(columns);
-        for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header.to_owned()), ("pandas", pandas)] {
-            self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
-        }
-        self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
-        self.sink.close()
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! To add a target, implement [`Target`] in a new file, and add it to [`TARGETS`] and to the list in `docs/export/README.md`. Rows
 //! come from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]. Write the header where the format has room for
-//! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` automatically.
+//! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` automatically. A format whose
+//! rows are edges or turns with all their columns implements `LayerFormat` (`layer_files`) instead.
 
 mod closures;
 mod columns;
@@ -11,6 +12,7 @@ mod flatgeobuf;
 mod geojson;
 mod geoparquet;
 mod graphhopper;
+mod layer_files;
 mod layers;
 mod ors;
 mod osm_pbf;
@@ -20,6 +22,7 @@ mod pgrouting;
 mod valhalla;
 
 use super::{ExportError, Layout, Place, Source};
+use layer_files::LayerFiles;
 
 pub use columns::{EDGE_COLUMNS, TURN_COLUMNS, edge_cells, turn_cells};
 
@@ -76,11 +79,11 @@ pub const TARGETS: &[&dyn Target] = &[
     &graphhopper::GraphHopper,
     &ors::Ors,
     &overture::Overture,
-    &geojson::GeoJson,
-    &geojson::GeoJsonSeq,
-    &geoparquet::GeoParquet,
-    &flatgeobuf::FlatGeobuf,
-    &csv::Csv,
+    LayerFiles::<geojson::GeoJson>::TARGET,
+    LayerFiles::<geojson::GeoJsonSeq>::TARGET,
+    LayerFiles::<geoparquet::GeoParquet>::TARGET,
+    LayerFiles::<flatgeobuf::FlatGeobuf>::TARGET,
+    LayerFiles::<csv::Csv>::TARGET,
 ];
 
 /// The target with this name.
@@ -99,13 +102,4 @@ pub fn check_reference(target: &dyn Target, reference: Option<&str>) -> Result<(
     }
     let others: Vec<&str> = TARGETS.iter().filter(|target| target.has_columns()).map(|target| target.name()).collect();
     Err(ExportError::NoReference { target: target.name(), others: others.join(", ") })
-}
-
-/// The layout of a target with one file per layer: a file for one layer, a folder for both.
-#[must_use]
-pub fn one_file_a_layer(target: &'static str, options: &Options) -> Layout {
-    match options.layer {
-        Some(_) => Layout::File,
-        None => Layout::Folder { target, instead: ", or one of them with --layer edges or --layer turns" },
-    }
 }

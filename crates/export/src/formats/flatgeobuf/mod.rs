@@ -13,49 +13,20 @@ use flatgeobuf::{
     HeaderArgs,
 };
 
-use super::layers::{Row, asked};
-use super::{Layer, Options, Target, one_file_a_layer};
+use super::layer_files::{LayerFormat, Table};
+use super::layers::Row;
 use crate::rows::Bounds;
 use crate::rows::{Cell, Kind};
 use crate::scratch::Scratch;
-use crate::{ExportError, Layout, Place, Sink, Source};
+use crate::{ExportError, Sink};
 use index::{Index, Located};
-
-/// `flatgeobuf`
-pub(super) struct FlatGeobuf;
 
 /// The first bytes of a file: `fgb`, version 3, `fgb`, patch 0.
 const MAGIC: [u8; 8] = *b"fgb\x03fgb\x00";
 
-impl Target for FlatGeobuf {
-    fn name(&self) -> &'static str {
-        "flatgeobuf"
-    }
-
-    fn about(&self) -> &'static str {
-        "edges and turns with all certificate columns, as FlatGeobuf with its index"
-    }
-
-    fn layout(&self, options: &Options) -> Layout {
-        one_file_a_layer(self.name(), options)
-    }
-
-    fn has_columns(&self) -> bool {
-        true
-    }
-
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        for layer in asked(options) {
-            let mut parts = Parts::create(place)?;
-            layer.each(source, |row| parts.push(row))?;
-            parts.write(source, layer, place.create(&format!("{}.fgb", layer.name()))?, place)?;
-        }
-        Ok(())
-    }
-}
-
-/// The parts of a file.
-struct Parts {
+/// `flatgeobuf`
+pub(super) struct FlatGeobuf {
+    sink: Sink,
     /// The features in order of the network.
     features: Scratch,
     /// The place of each feature, in the same order.
@@ -66,14 +37,18 @@ struct Parts {
     builder: FlatBufferBuilder<'static>,
 }
 
-impl Parts {
-    fn create(place: &Place) -> Result<Self, ExportError> {
-        let features = place.scratch(".features")?;
-        let located = place.scratch(".located")?;
-        Ok(Self { features, located, count: 0, end: 0, bounds: None, builder: FlatBufferBuilder::new() })
+impl LayerFormat for FlatGeobuf {
+    const NAME: &'static str = "flatgeobuf";
+    const ABOUT: &'static str = "edges and turns with all certificate columns, as FlatGeobuf with its index";
+    const ENDING: &'static str = "fgb";
+
+    fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
+        let features = table.place.scratch(".features")?;
+        let located = table.place.scratch(".located")?;
+        Ok(Self { sink, features, located, count: 0, end: 0, bounds: None, builder: FlatBufferBuilder::new() })
     }
 
-    fn push(&mut self, row: &Row<'_>) -> Result<(), ExportError> {
+    fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
         let Some(around) = Bounds::around(row.line.iter().copied()) else { return Ok(()) };
         let bytes = feature(&mut self.builder, row);
         self.features.write_all(bytes)?;
@@ -85,25 +60,26 @@ impl Parts {
         Ok(())
     }
 
-    fn write(mut self, source: &Source<'_>, layer: Layer, mut sink: Sink, place: &Place) -> Result<(), ExportError> {
-        sink.write_all(&MAGIC)?;
-        sink.write_all(&header(source, layer, self.count, self.bounds))?;
+    fn close(mut self, table: &Table<'_>) -> Result<(), ExportError> {
+        self.sink.write_all(&MAGIC)?;
+        self.sink.write_all(&header(table, self.count, self.bounds))?;
         if let Some(bounds) = self.bounds {
-            let mut index = Index::build(&mut self.located, self.count, bounds, place)?;
-            index.write(&mut sink)?;
+            let mut index = Index::build(&mut self.located, self.count, bounds, table.place)?;
+            index.write(&mut self.sink)?;
             let mut bytes = Vec::new();
-            source.reporter.begin("features", self.count);
+            let reporter = table.source.reporter;
+            reporter.begin("features", self.count);
             for (done, found) in (0_u64..).zip(index.in_order()?) {
                 let found = found?;
                 if done.is_multiple_of(4096) {
-                    source.reporter.advance(done);
+                    reporter.advance(done);
                 }
                 bytes.resize(found.bytes as usize, 0);
                 self.features.read_at(found.place, &mut bytes)?;
-                sink.write_all(&bytes)?;
+                self.sink.write_all(&bytes)?;
             }
         }
-        sink.close()
+        self.sink.close()
     }
 }
 
@@ -117,10 +93,11 @@ fn column_type(kind: Kind) -> ColumnType {
 }
 
 /// The encoded header, preceded by its length.
-fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
+fn header(table: &Table<'_>, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
+    let (layer, source) = (table.layer, table.source);
     let mut builder = FlatBufferBuilder::new();
     let mut columns = Vec::new();
-    for &(name, kind) in &layer.columns(source) {
+    for &(name, kind) in &table.columns {
         let name = builder.create_string(name);
         let nullable = kind != Kind::Flag;
         let column = ColumnArgs { name: Some(name), type_: column_type(kind), nullable, ..ColumnArgs::default() };
