@@ -22,11 +22,10 @@ use netcert::words::{Named, verdict_words};
 use super::Session;
 use super::certify_options;
 use super::database::DatabaseArgs;
-use super::fleet::{self, Fleet};
 use super::measurements;
 use super::output::{printable, results};
 use super::table::Table;
-use super::values::word;
+use super::vehicle_args::{PolicyArgs, VehicleArgs};
 
 /// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;
@@ -50,16 +49,10 @@ pub(crate) struct Explain {
     edge: String,
     #[command(flatten)]
     db: DatabaseArgs,
-    /// The vehicle; `netcert vehicles list` shows the ids.
-    #[arg(long, value_name = "ID")]
-    vehicle: String,
-    /// A file that defines the vehicle, if neither the catalogue nor the database does.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
-    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
-    /// as in the database's ingest, which uses lane unless told otherwise].
-    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
-    corridor: Option<Policy>,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    policy: PolicyArgs,
     /// Draw a picture into this file: the tightest place with the vehicle there, and the leeway along the edge.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
@@ -80,8 +73,8 @@ impl Explain {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
-        let policy = certify_options::policy_of(&mut database, self.corridor)?;
-        let vehicle = self.vehicle(&mut database)?;
+        let policy = certify_options::policy_of(&mut database, self.policy.corridor)?;
+        let vehicle = self.vehicle.definition(&mut database)?;
         let set = self.set(&mut database, &vehicle, policy)?;
         let settings = match &set {
             Some(set) => set.settings()?,
@@ -108,14 +101,14 @@ impl Explain {
                          another version: run `netcert certify --db {0} --vehicle {2} --corridor {}`",
                         path.display(),
                         row.edge_id,
-                        self.vehicle,
+                        self.vehicle.id,
                         settings.policy.name()
                     );
                 }
             }
             None => session.progress.say(&format!(
                 "{} is not certified in {} under the {} policy: explained as computed now",
-                self.vehicle,
+                self.vehicle.id,
                 path.display(),
                 settings.policy.name()
             )),
@@ -197,22 +190,12 @@ impl Explain {
         Ok(out.flush()?)
     }
 
-    /// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose certificates were made with
-    /// its own definition, then the catalogue.
-    fn vehicle(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
-        let fleet = Fleet::new(&self.vehicle_file)?;
-        match fleet::kept(database, &self.vehicle)? {
-            Some(vehicle) if !fleet.own.contains(&self.vehicle) => Ok(vehicle),
-            _ => Ok(fleet.catalogue.get(&self.vehicle)?.clone()),
-        }
-    }
-
     /// The stored set of certificates of this vehicle under this policy. `None` if there is none, or if the user's file
     /// defines the vehicle otherwise than the set.
     fn set(&self, database: &mut Database, vehicle: &Vehicle, policy: Policy) -> anyhow::Result<Option<CertifiedSet>> {
         let hash = pipeline::record(vehicle)?.blake3();
-        let own = Fleet::new(&self.vehicle_file)?.own.contains(&self.vehicle);
-        let set = database.certified_set(&self.vehicle, policy)?;
+        let own = self.vehicle.is_own()?;
+        let set = database.certified_set(&self.vehicle.id, policy)?;
         Ok(set.filter(|set| !own || set.vehicle_blake3 == hash))
     }
 
@@ -223,7 +206,7 @@ impl Explain {
             [] => bail!(
                 "no edge, way or road {:?} in the database; `netcert query --vehicle {}` lists the edges",
                 printable(&self.edge),
-                self.vehicle
+                self.vehicle.id
             ),
             several => {
                 let listed = self.listed(network, database, policy, several)?;
@@ -240,12 +223,13 @@ impl Explain {
         edges: &[u32],
     ) -> anyhow::Result<String> {
         let mut table = Table::new(&[">edge_id", ">way", "dir", "highway", ">length", ">rsc", "verdict", "road"]);
-        let certified = database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == policy);
+        let certified =
+            database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle.id && set.policy == policy);
         for &edge in edges.iter().take(MOST_LISTED) {
             let Some(facts) = network.edges.get(edge as usize) else { continue };
             let road = network.road(facts);
             let row = if certified {
-                let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle, policy) };
+                let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle.id, policy) };
                 database.query(&options)?.next().transpose()?
             } else {
                 None

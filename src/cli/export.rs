@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use jiff::civil::DateTime;
 use netcert::export::formats::{self, Layer, Options, TARGETS};
 use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
-use netcert::osm::facts::{Policy, WidthSource};
+use netcert::osm::facts::WidthSource;
 use netcert::store::Database;
 
 use super::Session;
 use super::database::DatabaseArgs;
-use super::on_demand::{self, Wanted};
+use super::on_demand;
 use super::output::{grouped, printable, results};
 use super::relative::RelativeArgs;
 use super::stop::when_stopped;
-use super::values::{local_time, metres, word};
+use super::values::{metres, word};
+use super::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 
 /// Write the roads and turns that a vehicle may use in the format of a routing engine or map program.
 ///
@@ -40,12 +40,8 @@ pub(crate) struct Export {
     target: &'static str,
     #[command(flatten)]
     db: DatabaseArgs,
-    /// The vehicle; `netcert vehicles list` shows the ids.
-    #[arg(long, value_name = "ID")]
-    vehicle: String,
-    /// A file that defines the vehicle, if neither the catalogue nor the database does.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
     /// The file or folder to write; the target says which of the two. `-` is standard output.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
@@ -63,14 +59,10 @@ pub(crate) struct Export {
     /// Permit only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
-    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
-    /// as `unknown: time`.
-    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
-    at: Option<DateTime>,
-    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
-    /// as in the database's ingest, which uses lane unless told otherwise].
-    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
-    corridor: Option<Policy>,
+    #[command(flatten)]
+    time: TimeArgs,
+    #[command(flatten)]
+    policy: PolicyArgs,
 }
 
 fn target_names() -> impl TypedValueParser<Value = &'static str> {
@@ -93,7 +85,7 @@ impl Export {
             }
         }
         formats::check_reference(target, self.relative.relative_to.as_deref())?;
-        self.relative.check(&path, &self.vehicle, self.corridor)?;
+        self.relative.check(&path, &self.vehicle.id, self.policy.corridor)?;
         let source = self.source(session, &path)?;
         let to_stream = self.out.as_os_str() == "-";
         let out = if to_stream { Out::Stream(Box::new(results())) } else { Out::Path(self.out.clone()) };
@@ -119,16 +111,15 @@ impl Export {
 
     fn source<'s>(&self, session: &'s Session, path: &Path) -> anyhow::Result<Source<'s>> {
         let database = Database::open(path)?;
-        let (files, policy) = (&self.vehicle_file[..], self.corridor);
-        let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: true, command: "export" };
+        let wanted = self.vehicle.wanted(self.policy.corridor, true, "export");
         let (database, set) = on_demand::certified(session, (path, database), &wanted)?;
         database.close()?;
         let ask = export::Ask {
             db: path.to_owned(),
-            vehicle: self.vehicle.clone(),
+            vehicle: self.vehicle.id.clone(),
             policy: set.policy,
             rule: PermitPolicy { min_rsc_m: self.min_rsc, min_width_source: self.width_source },
-            at: self.at,
+            at: self.time.at,
             extract: self.extract.clone(),
             relative_to: self.relative.relative_to.clone(),
         };

@@ -31,3 +31,13 @@ pub(crate) fn kept(database: &mut Database, id: &str) -> anyhow::Result<Option<V
         .with_context(|| format!("vehicle {id} of the database cannot be read; run `netcert ingest` again"))?;
     Ok(Some(vehicle))
 }
+
+/// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose certificates were made with its own
+/// definition, then the catalogue.
+pub(crate) fn definition(database: &mut Database, id: &str, files: &[PathBuf]) -> anyhow::Result<Vehicle> {
+    let fleet = Fleet::new(files)?;
+    match kept(database, id)? {
+        Some(vehicle) if !fleet.own.iter().any(|own| own == id) => Ok(vehicle),
+        _ => Ok(fleet.catalogue.get(id)?.clone()),
+    }
+}

@@ -43,6 +43,7 @@ mod table;
 mod turn_rows;
 mod update;
 mod values;
+mod vehicle_args;
 mod vehicles;
 mod verify;
 

@@ -7,13 +7,12 @@ use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
 use netcert::store::{CertifiedSet, Database, Reference};
-use netcert::vehicle::Vehicle;
 use netcert::words::Named;
 use serde_json::json;
 
 use super::Session;
 use super::certify_options;
-use super::fleet::{self, Fleet};
+use super::fleet;
 
 /// The vehicle and certificates that a command needs.
 #[derive(Clone, Copy)]
@@ -85,7 +84,7 @@ fn certified_like(
             None => certify_options::of_a_new_set(&mut database, policy)?,
         },
     };
-    let vehicle = definition(&mut database, wanted)?;
+    let vehicle = fleet::definition(&mut database, wanted.vehicle, wanted.files)?;
     database.close()?;
     let (id, db, name) = (&vehicle.id, path.display(), policy.name());
     let turns = if there { "The turns of " } else { "" };
@@ -110,14 +109,4 @@ fn certified_like(
     let made = database.certified_set(wanted.vehicle, policy)?;
     let set = made.ok_or_else(|| anyhow!("{db}: {id} was certified, but its certificates are gone"))?;
     Ok((database, set))
-}
-
-/// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose other certificates were made with
-/// its own definition, then the catalogue.
-fn definition(database: &mut Database, wanted: &Wanted<'_>) -> anyhow::Result<Vehicle> {
-    let fleet = Fleet::new(wanted.files)?;
-    match fleet::kept(database, wanted.vehicle)? {
-        Some(vehicle) if !fleet.own.iter().any(|own| own == wanted.vehicle) => Ok(vehicle),
-        _ => Ok(fleet.catalogue.get(wanted.vehicle)?.clone()),
-    }
 }

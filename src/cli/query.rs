@@ -5,7 +5,6 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use jiff::civil::DateTime;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, Relative};
@@ -18,12 +17,13 @@ use super::Session;
 use super::area;
 use super::database::DatabaseArgs;
 use super::fleet;
-use super::on_demand::{self, Wanted};
+use super::on_demand;
 use super::output::{km, results};
 use super::relative::{self, RelativeArgs};
 use super::rows::{Format, Head, Sink};
 use super::turn_rows;
-use super::values::{local_time, metres, signed_metres, word};
+use super::values::{metres, signed_metres, word};
+use super::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 
 /// List which roads a vehicle may use, and why it may not use the others.
 ///
@@ -63,12 +63,8 @@ feature also has the id as text, in `id`.")]
 pub(crate) struct Query {
     #[command(flatten)]
     db: DatabaseArgs,
-    /// The vehicle; `netcert vehicles list` shows the ids.
-    #[arg(long, value_name = "ID")]
-    vehicle: String,
-    /// A file that defines the vehicle, if neither the catalogue nor the database does.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
     /// Show only edges that touch this box (west, south, east, north, degrees). If west is greater than east, the box
     /// spans the 180th meridian.
     #[arg(long, value_name = "W,S,E,N", value_parser = area::bounds, allow_hyphen_values = true)]
@@ -97,17 +93,13 @@ pub(crate) struct Query {
     /// Show only rows on which the vehicle needs no more room than the vehicle of --relative-to.
     #[arg(long, requires = "relative_to")]
     as_reference: bool,
-    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
-    /// as `unknown: time`.
-    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
-    at: Option<DateTime>,
+    #[command(flatten)]
+    time: TimeArgs,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
-    /// as in the database's ingest, which uses lane unless told otherwise].
-    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
-    corridor: Option<Policy>,
+    #[command(flatten)]
+    policy: PolicyArgs,
 }
 
 impl Query {
@@ -118,20 +110,19 @@ impl Query {
         };
         let path = self.db.path()?;
         let database = Database::open(&path)?;
-        let (files, policy) = (&self.vehicle_file[..], self.corridor);
-        let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: self.turns, command: "query" };
+        let wanted = self.vehicle.wanted(self.policy.corridor, self.turns, "query");
         let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
         let mut compared = None;
         if let Some(id) = &self.relative.relative_to {
             let (opened, reference) = on_demand::reference(session, (&path, database), &wanted, (&set, id))?;
             database = opened;
-            compared = Some(ReferenceReader::open(&path, reference, self.at)?);
+            compared = Some(ReferenceReader::open(&path, reference, self.time.at)?);
         }
-        if let Some(time) = self.at {
+        if let Some(time) = self.time.at {
             database.set_time(time)?;
         }
         let estimated = self.needs_are_known(&set)?;
-        let vehicle = fleet::kept(&mut database, &self.vehicle)?;
+        let vehicle = fleet::kept(&mut database, &self.vehicle.id)?;
         if self.turns {
             let beside = compared.as_mut().map(ReferenceReader::turns).transpose()?;
             return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, (area, beside));
@@ -143,7 +134,7 @@ impl Query {
             min_rsc_m: self.min_rsc,
             needs_at_most_m: self.needs_at_most,
             min_width_source: self.width_source,
-            ..QueryOptions::new(&self.vehicle, set.policy)
+            ..QueryOptions::new(&self.vehicle.id, set.policy)
         };
         let head = self.head(set.policy, scope(vehicle.as_ref()) + shared(set.policy) + estimated);
         let mut totals = Totals::default();
@@ -171,7 +162,8 @@ impl Query {
         (area, mut beside): (Option<Area>, Option<Beside<'_>>),
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m, needs_at_most_m) = (self.verdict, self.min_rsc, self.needs_at_most);
-        let options = TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle, policy) };
+        let options =
+            TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle.id, policy) };
         let mut rows = Vec::new();
         for row in database.query_turns(&options)? {
             let relative = relative::beside(&mut beside, row.turn, &row.certificate)?;
@@ -211,9 +203,9 @@ impl Query {
 
     fn head(&self, policy: Policy, mut scope: String) -> Head {
         let relative_to = self.relative.relative_to.clone();
-        scope += &self.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+        scope += &self.time.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
         scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
-        Head { vehicle: self.vehicle.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
+        Head { vehicle: self.vehicle.id.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
     }
 
     /// Whether a row is shown that the database gave.

@@ -1,0 +1,57 @@
+//! What verbs share that ask about one vehicle in a database: the vehicle, the width that it may use, and the time.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use jiff::civil::DateTime;
+use netcert::osm::facts::Policy;
+use netcert::store::Database;
+use netcert::vehicle::Vehicle;
+
+use super::fleet::{self, Fleet};
+use super::on_demand::Wanted;
+use super::values::{local_time, word};
+
+#[derive(Args)]
+pub(crate) struct VehicleArgs {
+    /// The vehicle; `netcert vehicles list` shows the ids.
+    #[arg(long = "vehicle", value_name = "ID")]
+    pub(crate) id: String,
+    /// A file that defines the vehicle, if neither the catalogue nor the database does.
+    #[arg(long = "vehicle-file", value_name = "F.toml")]
+    files: Vec<PathBuf>,
+}
+
+// A struct of its own, because verbs have other options between this one and those of the vehicle.
+#[derive(Args)]
+pub(crate) struct PolicyArgs {
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// as in the database's ingest, which uses lane unless told otherwise].
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    pub(crate) corridor: Option<Policy>,
+}
+
+#[derive(Args)]
+pub(crate) struct TimeArgs {
+    /// The time of the journey, in local time of the place: a road that is closed at some times is judged by its rules then, and not
+    /// as `unknown: time`.
+    #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
+    pub(crate) at: Option<DateTime>,
+}
+
+impl VehicleArgs {
+    /// The vehicle's certificates, for a verb that makes them if they are missing.
+    pub(crate) fn wanted(&self, policy: Option<Policy>, turns: bool, command: &'static str) -> Wanted<'_> {
+        Wanted { vehicle: &self.id, files: &self.files, policy, turns, command }
+    }
+
+    /// The vehicle's definition.
+    pub(crate) fn definition(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
+        fleet::definition(database, &self.id, &self.files)
+    }
+
+    /// Whether one of the user's files defines the vehicle.
+    pub(crate) fn is_own(&self) -> anyhow::Result<bool> {
+        Ok(Fleet::new(&self.files)?.own.contains(&self.id))
+    }
+}
