@@ -1,6 +1,7 @@
 //! The turns of a database are confirmed as they were made, and every column of theirs, changed in the unsafe direction with plain SQL,
 //! is refuted.
 
+use crate::verify_database::survivors;
 use netcert_testing::{extracts, program};
 
 use program::Place;
@@ -10,8 +11,7 @@ const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
 
 #[test]
 fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
-    let made = Place::with_wide_demo("AU-SEMI19");
-    let told = made.netcert(VERIFY).succeeds().out();
+    let told = Place::with_wide_demo("AU-SEMI19").netcert(VERIFY).succeeds().out();
     println!("{told}");
     let safe = "verdict_no = 0";
     let changes = [
@@ -37,15 +37,7 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
         "DELETE FROM turn_certificate_compact WHERE fid = 5".to_owned(),
         "DELETE FROM certified_turns".to_owned(),
     ];
-    let bytes = made.read("demo.gpkg");
-    let mut survivors = Vec::new();
-    for sql in &changes {
-        let place = Place::empty().file("demo.gpkg", &bytes);
-        assert!(place.sql(sql) > 0, "{sql}: nothing to change");
-        if place.command(VERIFY).output().unwrap().status.success() {
-            survivors.push(sql);
-        }
-    }
+    let survivors = survivors(&changes, VERIFY, || Place::with_wide_demo("AU-SEMI19"));
     println!("mutation score of turns: {} of {}", changes.len() - survivors.len(), changes.len());
     assert!(survivors.is_empty(), "{survivors:#?}");
 }

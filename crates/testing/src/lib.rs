@@ -6,6 +6,7 @@
 //! | `demo`, `extracts`, `catalogue`, `documentation` | the shipped region, real extracts, the catalogue's vehicles |
 //! | `program`, `python`, `skip` | run the built program and Python packages, and say what is not there |
 //! | `accounts`, `sheet`, `xml` | look at what was written |
+//! | `mutations` | change certificate files so that `verify` must refute them |
 //! | `oracle` | the link between the certifier and the oracle |
 //!
 //! A fault here is a test that fails, so everything may panic.
@@ -21,6 +22,7 @@ pub mod demo;
 pub mod documentation;
 pub mod extracts;
 pub mod junctions;
+pub mod mutations;
 pub mod oracle;
 pub mod program;
 pub mod python;
