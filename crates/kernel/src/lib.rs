@@ -3,7 +3,7 @@
 //!
 //! [`stet`] decides. [`published`] is the paper's own certificate to the letter and decides nothing.
 
-// `stet/lanes.rs` uses instructions that not every processor has. It asks first.
+// `stet/lanes/` uses instructions that not every processor has. It asks first.
 #![allow(unsafe_code)]
 
 pub mod published;

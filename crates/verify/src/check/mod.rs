@@ -2,7 +2,7 @@
 //!
 //! It was written from `docs/proof.md` and the file formats. The crate `netcert-check` checks one vehicle on one corridor; it
 //! cannot depend on the kernel. Nothing of `stet` or `pipeline` is used here, and nothing there uses this module
-//! (`tests/program/verify_independence.rs`). The subject of a claim comes from the modules that the prover uses, too:
+//! (`tests/program/walls.rs`). The subject of a claim comes from the modules that the prover uses, too:
 //! `vehicle`, `corridor` (the road's shape and widths), `turns` (a turn's area, paths and widths) and `network`. The claims
 //! themselves are computed again.
 //!

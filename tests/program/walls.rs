@@ -1,5 +1,5 @@
-//! Tests that the checker shares no code with what it checks. Cargo keeps the crates apart: no manifest of a checker names the prover.
-//! The checker must be the smaller of the two.
+//! Tests the walls of the code: that the checker shares nothing with what it checks, which crate knows which, that modules go in no circle, and
+//! that they lie in folders in one way. Cargo keeps the crates apart: no manifest of a checker names the prover.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -143,4 +143,13 @@ fn modules_are_in_no_circle() {
         let known = CIRCLES.iter().any(|name| folder == format!("crates/{name}/src"));
         assert_eq!(named.is_empty(), !known, "{folder}: in or above a circle: {named:#?}");
     }
+}
+
+#[test]
+fn a_module_with_parts_is_a_folder_with_its_own_text_in_mod_rs() {
+    let folders = crates().into_iter().map(|name| format!("crates/{name}/src")).chain(["src".to_owned()]);
+    let files: Vec<PathBuf> = folders.flat_map(|folder| sources(&folder)).map(|(path, _)| path).collect();
+    assert!(files.len() > 400, "{}", files.len());
+    let beside: Vec<_> = files.iter().filter(|path| path.with_extension("").is_dir()).collect();
+    assert!(beside.is_empty(), "a file beside a folder of its name: {beside:?}");
 }
