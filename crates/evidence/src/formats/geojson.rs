@@ -108,11 +108,7 @@ fn scalar(value: &Value) -> Result<String, String> {
 }
 
 fn shape(geometry: &GeometryValue) -> Result<Option<Shape>, String> {
-    let nonempty = |shape: Shape| match &shape {
-        Shape::Line(line) if line.is_empty() => None,
-        Shape::Polygon(rings) if rings.is_empty() => None,
-        _ => Some(shape),
-    };
+    let nonempty = |shape: Shape| Some(shape).filter(|shape| !shape.is_empty());
     match geometry {
         GeometryValue::Point { coordinates } if coordinates.is_empty() => Ok(None),
         GeometryValue::Point { coordinates } => xy(coordinates).map(|at| Some(Shape::Point(at))),

@@ -25,12 +25,23 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The one part of a geometry that may have several.
-    pub fn only<T>(mut parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
+    /// Whether it has no positions.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Point(_) => false,
+            Self::Line(line) => line.is_empty(),
+            Self::Polygon(rings) => rings.iter().all(Vec::is_empty),
+        }
+    }
+
+    /// The one part of a geometry that may have several. Empty parts do not count.
+    pub fn only<T>(parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
+        let mut parts: Vec<Self> = parts.into_iter().map(make).filter(|part| !part.is_empty()).collect();
         let last = parts.pop();
-        match (last, parts.len()) {
-            (last, 0) => Ok(last.map(make)),
-            (_, more) => Err(format!("{} parts; write one row for each", more + 1)),
+        match parts.len() {
+            0 => Ok(last),
+            more => Err(format!("{} parts; write one row for each", more + 1)),
         }
     }
 

@@ -70,26 +70,33 @@ impl Bytes<'_> {
         self.list(|bytes| bytes.line(coordinates))
     }
 
-    /// Parts of a geometry that has several. Each has a header of its own.
-    fn parts<T>(&mut self, kind: u32, part: impl Fn(&mut Self, usize) -> Result<T, String>) -> Result<Vec<T>, String> {
-        self.list(|bytes| match bytes.header()? {
-            (found, coordinates) if found == kind => part(bytes, coordinates),
+    /// A point, a line or a polygon; `None` if it is empty.
+    fn one(&mut self, kind: u32, coordinates: usize) -> Result<Option<Shape>, String> {
+        let shape = match kind {
+            1 => Shape::Point(self.xy(coordinates)?),
+            2 => Shape::Line(self.line(coordinates)?),
+            3 => Shape::Polygon(self.polygon(coordinates)?),
+            _ => return Err("neither point nor line nor polygon; convert it to one".to_owned()),
+        };
+        // An empty point has no numbers (GeoPackage, clause 2.1.3.1.1).
+        let nowhere = matches!(shape, Shape::Point(at) if at.iter().all(|x| x.is_nan()));
+        Ok(Some(shape).filter(|shape| !nowhere && !shape.is_empty()))
+    }
+
+    /// Parts of a geometry that has several, without empty ones. Each has a header of its own.
+    fn parts(&mut self, kind: u32) -> Result<Vec<Shape>, String> {
+        let parts = self.list(|bytes| match bytes.header()? {
+            (found, coordinates) if found == kind => bytes.one(kind, coordinates),
             _ => Err("a part of the geometry is of another type; write the file again".to_owned()),
-        })
+        })?;
+        Ok(parts.into_iter().flatten().collect())
     }
 
     fn shape(&mut self) -> Result<Option<Shape>, String> {
-        let (kind, coordinates) = self.header()?;
-        Ok(match kind {
-            // An empty point has no numbers (GeoPackage, clause 2.1.3.1.1).
-            1 => Some(self.xy(coordinates)?).filter(|at| !at.iter().all(|x| x.is_nan())).map(Shape::Point),
-            2 => Some(self.line(coordinates)?).filter(|line| !line.is_empty()).map(Shape::Line),
-            3 => Some(self.polygon(coordinates)?).filter(|rings| !rings.is_empty()).map(Shape::Polygon),
-            4 => Shape::only(self.parts(1, Self::xy)?, Shape::Point)?,
-            5 => Shape::only(self.parts(2, Self::line)?, Shape::Line)?,
-            6 => Shape::only(self.parts(3, Self::polygon)?, Shape::Polygon)?,
-            _ => return Err("neither point nor line nor polygon; convert it to one".to_owned()),
-        })
+        match self.header()? {
+            (several @ 4..=6, _) => Shape::only(self.parts(several - 3)?, |shape| shape),
+            (kind, coordinates) => self.one(kind, coordinates),
+        }
     }
 }
 
@@ -112,4 +119,32 @@ pub fn from_geopackage(blob: &[u8]) -> Result<(i32, Option<Shape>), String> {
     let envelope = [0, 32, 48, 48, 64].get(usize::from(flags >> 1 & 7)).copied();
     let wkb = envelope.and_then(|length| bytes.rest.get(length..)).ok_or(CUT)?;
     Ok((srs, from_wkb(wkb)?))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn several(kind: u32, parts: &[&[u8]]) -> Vec<u8> {
+        let head = [&[1][..], &kind.to_le_bytes(), &(parts.len() as u32).to_le_bytes()].concat();
+        [head, parts.concat()].concat()
+    }
+
+    #[test]
+    fn empty_parts_are_no_parts() {
+        let [nothing, some] =
+            [f64::NAN, 8.0].map(|x| [&[1, 1, 0, 0, 0][..], &x.to_le_bytes(), &x.to_le_bytes()].concat());
+        let line = [1, 2, 0, 0, 0, 0, 0, 0, 0];
+        let polygon = [1, 3, 0, 0, 0, 0, 0, 0, 0];
+        let of_an_empty_ring = [&[1, 3, 0, 0, 0, 1, 0, 0, 0][..], &[0; 4]].concat();
+        for (kind, part) in [(4, &nothing[..]), (5, &line), (6, &polygon), (6, &of_an_empty_ring)] {
+            assert_eq!(from_wkb(part), Ok(None));
+            assert_eq!(from_wkb(&several(kind, &[])), Ok(None));
+            assert_eq!(from_wkb(&several(kind, &[part, part])), Ok(None));
+        }
+        assert_eq!(from_wkb(&several(4, &[&nothing, &some])), Ok(Some(Shape::Point([8.0, 8.0]))));
+        assert!(from_wkb(&several(4, &[&some, &some])).unwrap_err().contains("2 parts"));
+        assert!(from_wkb(&several(5, &[&some])).unwrap_err().contains("of another type"));
+    }
 }
