@@ -1,7 +1,10 @@
 //! Reads the XML of OsmChange, plain or gzipped.
+//!
+//! Memory grows with the objects of a file alone: a piece of the text has a greatest length and elements have a greatest depth, since a
+//! megabyte of gzip can be a gigabyte of one text or of elements in each other.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read as _, Seek as _};
+use std::io::{self, BufRead, BufReader, Read, Seek as _};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -39,9 +42,44 @@ impl Changes {
     }
 }
 
+/// Most bytes of a tag with its attributes, of a comment, or of the text between two tags. A tag of an object has some 2 KB at most.
+const MOST_BYTES: usize = 1 << 20;
+/// Elements in each other: the root, a block, an object, a part of it, and some to spare.
+const MOST_DEPTH: usize = 8;
+
+/// A text of which only so much may be read on.
+struct Bounded<R> {
+    text: R,
+    left: usize,
+}
+
+impl<R: BufRead> Read for Bounded<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let read = self.fill_buf()?.read(out)?;
+        self.consume(read);
+        Ok(read)
+    }
+}
+
+impl<R: BufRead> BufRead for Bounded<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        let bytes = self.text.fill_buf()?;
+        if self.left == 0 && !bytes.is_empty() {
+            return Err(io::Error::other("a tag, text or comment of more than 1 MiB"));
+        }
+        Ok(bytes.get(..self.left).unwrap_or(bytes))
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.left -= count;
+        self.text.consume(count);
+    }
+}
+
 struct Parser<'p, R: BufRead> {
     path: &'p Path,
-    reader: quick_xml::Reader<R>,
+    reader: quick_xml::Reader<Bounded<R>>,
+    depth: usize,
     changes: Changes,
     action: Option<Action>,
     /// The object that is being read: kind, id and state.
@@ -52,8 +90,8 @@ struct Parser<'p, R: BufRead> {
 
 impl<'p, R: BufRead> Parser<'p, R> {
     fn new(path: &'p Path, input: R) -> Self {
-        let reader = quick_xml::Reader::from_reader(input);
-        Self { path, reader, changes: Changes::default(), action: None, object: None, root: [false; 2] }
+        let reader = quick_xml::Reader::from_reader(Bounded { text: input, left: MOST_BYTES });
+        Self { path, reader, depth: 0, changes: Changes::default(), action: None, object: None, root: [false; 2] }
     }
 
     fn error(&self, detail: impl Into<String>) -> ChangeError {
@@ -69,14 +107,24 @@ impl<'p, R: BufRead> Parser<'p, R> {
         let mut buffer = Vec::new();
         loop {
             buffer.clear();
+            self.reader.get_mut().left = MOST_BYTES;
             let event = self.reader.read_event_into(&mut buffer);
             match event.map_err(|error| self.broken(&error))? {
-                Event::Start(element) => self.begin(&element)?,
+                Event::Start(_) if self.depth == MOST_DEPTH => {
+                    return Err(self.error("elements stand too deep in each other; this is no osmChange"));
+                }
+                Event::Start(element) => {
+                    self.depth += 1;
+                    self.begin(&element)?;
+                }
                 Event::Empty(element) => {
                     self.begin(&element)?;
                     self.end(element.name().as_ref());
                 }
-                Event::End(element) => self.end(element.name().as_ref()),
+                Event::End(element) => {
+                    self.depth = self.depth.saturating_sub(1);
+                    self.end(element.name().as_ref());
+                }
                 Event::Eof if self.root == [true, true] => return Ok(self.changes),
                 Event::Eof => return Err(self.error("the file ends too soon, or is no osmChange; fetch it again")),
                 _ => {}
@@ -188,5 +236,37 @@ impl<'p, R: BufRead> Parser<'p, R> {
 
     fn required<T: FromStr>(&self, element: &BytesStart<'_>, name: &str, of: &str) -> Result<T, ChangeError> {
         self.number(element, name)?.ok_or_else(|| self.error(format!("a {of} has no {name}")))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// What is said of `head`, then `count` times `piece`.
+    fn said(head: &str, piece: &'static str, count: u64) -> String {
+        let many = std::iter::repeat_n(piece, count as usize).collect::<String>();
+        let text = BufReader::new(head.as_bytes().chain(many.as_bytes()));
+        Parser::new(Path::new("x.osc"), text).run().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_text_or_a_depth_without_end_is_refused_before_it_fills_memory() {
+        for head in ["", "<", "<osmChange>", "<osmChange><!--", "<osmChange a='", "<osmChange><create><node id='", "</"]
+        {
+            let error = said(head, " ", 2 << 20);
+            assert!(error.contains("of more than 1 MiB"), "{head}: {error}");
+        }
+        assert!(said("<osmChange>", "<bounds>", 9).contains("too deep"));
+    }
+
+    #[test]
+    fn long_texts_and_files_of_any_length_are_read() {
+        let comment = format!("<osmChange><!--{}--><create>", " ".repeat(MOST_BYTES - 100));
+        let node = "<node id='1' lon='8' lat='49'><tag k='a' v='b'/></node>\n".repeat(40_000);
+        let text = format!("{comment}{node}</create></osmChange>");
+        let changes = Parser::new(Path::new("x.osc"), BufReader::new(text.as_bytes())).run().unwrap();
+        assert_eq!(changes.len(), 1);
     }
 }
