@@ -147,6 +147,55 @@ fn a_block_of_millions_of_tiny_objects_is_refused_before_it_fills_memory() {
     assert_memory_bounded();
 }
 
+#[test]
+fn an_object_of_millions_of_tags_nodes_or_members_is_refused_before_it_fills_memory() {
+    let bytes = |field: u8, content: &[u8]| {
+        let mut out = vec![field << 3 | 2];
+        let mut length = content.len();
+        while length > 0x7f {
+            out.push(length as u8 | 0x80);
+            length >>= 7;
+        }
+        out.push(length as u8);
+        out.extend_from_slice(content);
+        out
+    };
+    let id = &[8, 1][..];
+    let tags = || [bytes(2, &[1; 3_000_000]), bytes(3, &[1; 3_000_000])].concat();
+    let way = |content: &[u8]| bytes(3, &[id, content].concat());
+    // A road of two nodes, the first one millions of times, with a place for each.
+    let places = || {
+        let [nodes, lats, lons] = [8, 9, 10].map(|field| bytes(field, &[&[0; 3_000_000][..], &[2]].concat()));
+        way(&[&[0x12, 1, 1, 0x1a, 1, 2][..], &nodes, &lats, &lons].concat())
+    };
+    let dense = || {
+        let keys_values = [&[1; 5_999_998][..], &[0]].concat();
+        bytes(2, &[bytes(1, &[2]), bytes(8, &[2]), bytes(9, &[2]), bytes(10, &keys_values)].concat())
+    };
+    let members = || [id, &[8, 9, 10].map(|field| bytes(field, &[0; 3_000_000])).concat()].concat();
+    let bombs: [(&str, &dyn Fn() -> Vec<u8>); 7] = [
+        ("tags of an object", &|| way(&tags())),
+        ("nodes of a way", &|| way(&bytes(8, &[2; 3_000_000]))),
+        ("nodes of a way", &places),
+        ("tags of an object", &|| bytes(1, &[id, &[0x40, 0, 0x48, 0], &tags()].concat())),
+        ("tags of an object", &dense),
+        ("tags of an object", &|| bytes(4, &[id, &tags()].concat())),
+        ("members of a relation", &|| bytes(4, &members())),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bomb.osm.pbf");
+    for (what, group) in bombs {
+        let strings = bytes(1, b"\x0a\0\x0a\x07highway\x0a\x07primary");
+        let mut file = Vec::new();
+        write::frame(&mut file, "OSMHeader", &write::zlib_blob(&header()));
+        write::frame(&mut file, "OSMData", &write::zlib_blob(&[strings, bytes(2, &group())].concat()));
+        fs::write(&path, &file).unwrap();
+        let message = read(&path).unwrap_err().to_string();
+        assert!(message.contains(what) && message.contains("at most 1,000,000"), "{message}");
+    }
+    assert_memory_bounded();
+}
+
 /// Reads `count` changed files; how many were accepted and refused.
 fn mutate(count: u64, seed: u64, change: impl Fn(&mut Random) -> Vec<u8>) -> (u64, u64) {
     let folder = tempfile::tempdir().unwrap();

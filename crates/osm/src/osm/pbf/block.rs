@@ -11,7 +11,7 @@ use super::{
     wire::{Cursor, Packed},
 };
 
-/// Most objects, groups and strings of a block, each.
+/// Most objects, groups and strings of a block, each, and most tags, nodes and members of an object.
 pub(super) const MAX_ENTITIES: usize = 1_000_000;
 
 /// A decoded block, borrowed from the inflated bytes.
@@ -46,11 +46,18 @@ impl<'a> Block<'a> {
 }
 
 /// Refuses a count above the limit.
+#[inline]
 pub(super) fn limit(count: usize, what: &'static str) -> Result<(), Problem> {
     if count <= MAX_ENTITIES {
         return Ok(());
     }
     Err(Problem::Size { what, found: count as i64, allowed: "at most 1,000,000" })
+}
+
+/// Refuses an object with too many tags. 32 MiB of two zeros each deflate to 32 KB, and are half a gigabyte of tags.
+#[inline]
+pub(super) fn limit_tags(count: usize) -> Result<(), Problem> {
+    limit(count, "the number of tags of an object")
 }
 
 fn granularity(found: u64) -> Result<i64, Problem> {
@@ -114,6 +121,7 @@ impl<'a> Strings<'a> {
         let (mut keys, mut values) = (keys.cursor(), values.cursor());
         while !keys.is_empty() && !values.is_empty() {
             tags.push((self.text(keys.varint()?, object)?, self.text(values.varint()?, object)?));
+            limit_tags(tags.len())?;
         }
         if keys.is_empty() && values.is_empty() {
             return Ok(());

@@ -196,6 +196,7 @@ where
         if node.keys.len() != node.vals.len() {
             return Err(Problem::Lengths { object, what: "keys and values" });
         }
+        block::limit_tags(node.keys.len())?;
         self.tags.clear();
         for (&key, &value) in node.keys.iter().zip(&node.vals) {
             let strings = &self.block.strings;
@@ -251,6 +252,7 @@ where
             }
             let strings = &self.block.strings;
             self.tags.push((strings.text(key, object)?, strings.text(keys_values.varint()?, object)?));
+            block::limit_tags(self.tags.len())?;
         }
     }
 }

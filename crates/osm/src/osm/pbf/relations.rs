@@ -98,6 +98,8 @@ fn checked<'a>(message: &[u8], strings: &Strings<'a>) -> Result<Checked<'a>, Pro
     if relation.memids.len() != relation.roles_sid.len() || relation.memids.len() != relation.types.len() {
         return Err(Problem::Lengths { object, what: "members, roles and types" });
     }
+    super::block::limit_tags(relation.keys.len())?;
+    super::block::limit(relation.memids.len(), "the number of members of a relation")?;
     let mut tags = Vec::with_capacity(relation.keys.len());
     for (&key, &value) in relation.keys.iter().zip(&relation.vals) {
         tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));

@@ -24,6 +24,8 @@ use super::{
 const DELETED: &str = "deleted";
 /// Left out: fewer than two distinct nodes.
 const TOO_FEW_NODES: &str = "too_few_nodes";
+/// What is limited of a way.
+const NODES: &str = "the number of nodes of a way";
 
 /// A kept way of a block. Its texts are in the batch's own pool.
 #[derive(Debug)]
@@ -203,10 +205,11 @@ where
             block::add(&mut node, cursor.sint()?, object, "a node reference")?;
             if last != Some(node) {
                 self.batch.refs.push(node);
+                block::limit(self.batch.refs.len() - start, NODES)?;
                 last = Some(node);
             }
         }
-        block::limit(self.batch.refs.len() - start, "the number of nodes of a way")
+        Ok(())
     }
 
     /// Takes the positions that the way carries for its nodes.
@@ -214,7 +217,7 @@ where
         if way.lats.is_empty() && way.lons.is_empty() {
             return Ok(());
         }
-        let (mut node, mut lat, mut lon) = (0, 0, 0);
+        let (start, mut node, mut lat, mut lon) = (self.batch.inline_places.len(), 0, 0, 0);
         let (mut refs, mut lats, mut lons) = (way.refs.cursor(), way.lats.cursor(), way.lons.cursor());
         while !(refs.is_empty() || lats.is_empty() || lons.is_empty()) {
             block::add(&mut node, refs.sint()?, object, "a node reference")?;
@@ -222,6 +225,7 @@ where
             block::add(&mut lon, lons.sint()?, object, "a longitude")?;
             if let Some(place) = self.block.grid.place(lat, lon) {
                 self.batch.inline_places.push((node, place));
+                block::limit(self.batch.inline_places.len() - start, NODES)?;
             }
         }
         if refs.is_empty() && lats.is_empty() && lons.is_empty() {
