@@ -177,4 +177,17 @@ mod tests {
         assert!(ring.join(7, Some(at(0)), Some(1.0)) && ring.nodes[3] == 7 && ring.nodes[0] == 0);
         assert!(ring.join(7, Some(at(0)), Some(0.0)) && ring.nodes[0] == 7);
     }
+
+    #[test]
+    fn a_vertex_is_numbered_by_its_place_and_by_how_often_the_line_was_there() {
+        let mut line = Line::new((0..50_000).map(|i| at(i % 2 * 1000)).collect()).unwrap();
+        assert!(line.number(3, 7));
+        let key = Key::segment("s");
+        line.number_rest(key);
+        for vertex in [0, 1, 2, 4, 5, 49_999] {
+            let place = u64::from(line.places[vertex].lon_e7.cast_unsigned()) << 32;
+            assert_eq!(line.nodes[vertex], key.of_part([place, vertex as u64 / 2]));
+        }
+        assert_eq!(line.nodes[3], 7);
+    }
 }
