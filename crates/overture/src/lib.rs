@@ -6,7 +6,7 @@
 
 #[cfg(test)]
 use netcert_base::{vehicle, verdict};
-use netcert_files::folders;
+use netcert_files::{folders, outside};
 use netcert_osm::{osm, shape};
 use netcert_rows as rows;
 

@@ -3,7 +3,6 @@
 //! Row groups are read on all threads. The error of a file is that of its first faulty group.
 
 use std::fs::File;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,6 +17,7 @@ use serde_json::{Map, Value};
 
 use super::error::{OvertureError, Place, Problem};
 use super::record;
+use crate::outside;
 
 /// Columns of segments that are read. The first ones must be there: without them a closed road would look open.
 const SEGMENT: [&str; 17] = [
@@ -122,14 +122,14 @@ fn open(path: &Path) -> Result<SerializedFileReader<File>, Problem> {
 
 /// Calls the library of the format. On some damaged files it panics; such a file is an error like any other.
 fn guarded<T>(call: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, Problem> {
-    match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(Ok(value)) => Ok(value),
-        Ok(Err(error)) => {
+    match outside::caught(call) {
+        Some(Ok(value)) => Ok(value),
+        Some(Err(error)) => {
             let text = error.to_string();
             let codec = text.contains("Disabled feature at compile time");
             Err(if codec { Problem::Codec(text) } else { Problem::Damaged(text) })
         }
-        Err(_) => Err(Problem::Damaged("its parts do not fit together".to_owned())),
+        None => Err(Problem::Damaged("its parts do not fit together".to_owned())),
     }
 }
 

@@ -3,7 +3,6 @@
 mod cells;
 
 use std::fs::File;
-use std::panic::AssertUnwindSafe;
 
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -18,8 +17,7 @@ use cells::Cell;
 
 /// All records of a file, numbered from 1. The crate panics on pages whose sizes contradict each other; that is an error here.
 pub(super) fn records(file: File) -> Result<Vec<Record>, Failure> {
-    let read = AssertUnwindSafe(|| read(file));
-    std::panic::catch_unwind(read).unwrap_or_else(|_| Err(damaged("its pages contradict each other")))
+    netcert_files::outside::caught(|| read(file)).unwrap_or_else(|| Err(damaged("its pages contradict each other")))
 }
 
 fn read(file: File) -> Result<Vec<Record>, Failure> {
