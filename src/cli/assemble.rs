@@ -10,8 +10,8 @@ use netcert::pipeline::{self, RunError, TaskJob};
 use serde_json::json;
 
 use super::Session;
-use super::certify_options;
 use super::ingest::Roads;
+use crate::cli::arguments::certify_options;
 
 /// Make a database of the results of tasks that a cluster has certified.
 ///

@@ -10,8 +10,8 @@ use netcert::pipeline::{self, EDGES_OF_A_TASK, RunError};
 
 use super::Session;
 use super::ingest::Roads;
-use super::output::grouped;
-use super::stop::when_stopped;
+use crate::cli::output::grouped;
+use crate::cli::session::stop::when_stopped;
 
 /// Divide an extract into tasks that machines of a cluster certify, each by itself.
 ///

@@ -14,9 +14,9 @@ use netcert::words::Named;
 use serde_json::json;
 
 use super::Session;
-use super::certify_options::{self, CertifyOptions};
-use super::database::DatabaseArgs;
-use super::fleet::{self, Fleet};
+use crate::cli::arguments::certify_options::{self, CertifyOptions};
+use crate::cli::database::DatabaseArgs;
+use crate::cli::database::fleet::{self, Fleet};
 
 /// Certify vehicles in an existing database, again or for the first time.
 ///

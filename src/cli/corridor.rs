@@ -12,9 +12,9 @@ use netcert::words::Named;
 
 use super::Session;
 use super::explain::{wrapped, write_picture};
-use super::fleet::Fleet;
-use super::output::results;
-use super::values::metres;
+use crate::cli::arguments::values::metres;
+use crate::cli::database::fleet::Fleet;
+use crate::cli::output::results;
 
 /// The file is read into memory; 64 MiB hold a million points.
 const MAX_FILE_BYTES: u64 = 64 << 20;

@@ -11,10 +11,10 @@ use netcert::words::Named;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::output::{grouped, km, printable, results};
-use super::rows::{Format, csv};
-use super::table::Table;
-use super::values::word;
+use crate::cli::arguments::values::word;
+use crate::cli::output::rows::{Format, csv};
+use crate::cli::output::table::Table;
+use crate::cli::output::{grouped, km, printable, results};
 
 /// Show what changed for vehicles from an older database to a newer one: what became safe, conditional, unsafe, forbidden or
 /// unknown, what appeared and what went.

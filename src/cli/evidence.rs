@@ -13,10 +13,10 @@ use netcert::words::Named;
 use serde_json::json;
 
 use super::Session;
-use super::database::DatabaseArgs;
-use super::output::{grouped, printable, results};
-use super::table::Table;
-use super::values::word;
+use crate::cli::arguments::values::word;
+use crate::cli::database::DatabaseArgs;
+use crate::cli::output::table::Table;
+use crate::cli::output::{grouped, printable, results};
 
 /// Keep measurements of roads, and certify with them: widths, kerb radii and paved surfaces that somebody measured on site.
 ///

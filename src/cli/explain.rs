@@ -20,12 +20,12 @@ use netcert::vehicle::Vehicle;
 use netcert::words::{Named, verdict_words};
 
 use super::Session;
-use super::certify_options;
-use super::database::DatabaseArgs;
-use super::measurements;
-use super::output::{printable, results};
-use super::table::Table;
-use super::vehicle_args::{PolicyArgs, VehicleArgs};
+use crate::cli::arguments::certify_options;
+use crate::cli::arguments::vehicle_args::{PolicyArgs, VehicleArgs};
+use crate::cli::database::DatabaseArgs;
+use crate::cli::database::measurements;
+use crate::cli::output::table::Table;
+use crate::cli::output::{printable, results};
 
 /// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;

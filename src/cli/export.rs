@@ -10,13 +10,13 @@ use netcert::osm::facts::WidthSource;
 use netcert::store::Database;
 
 use super::Session;
-use super::database::DatabaseArgs;
-use super::on_demand;
-use super::output::{grouped, printable, results};
-use super::relative::RelativeArgs;
-use super::stop::when_stopped;
-use super::values::{metres, word};
-use super::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::arguments::relative::RelativeArgs;
+use crate::cli::arguments::values::{metres, word};
+use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::database::DatabaseArgs;
+use crate::cli::database::on_demand;
+use crate::cli::output::{grouped, printable, results};
+use crate::cli::session::stop::when_stopped;
 
 /// Write the roads and turns that a vehicle may use in the format of a routing engine or map program.
 ///

@@ -9,10 +9,10 @@ use netcert::pipeline::{self, EDGES_AT_ONCE, Selection};
 use serde_json::json;
 
 use super::Session;
-use super::certify_options::{self, CertifyOptions};
-use super::fleet::Fleet;
-use super::progress::human;
-use super::values::country_code;
+use crate::cli::arguments::certify_options::{self, CertifyOptions};
+use crate::cli::arguments::values::country_code;
+use crate::cli::database::fleet::Fleet;
+use crate::cli::session::progress::human;
 
 /// Read an OpenStreetMap extract or Overture's files, certify the roads, and write a GeoPackage.
 ///

@@ -7,7 +7,7 @@ use clap::Args;
 use netcert::sign::PrivateKey;
 
 use super::Session;
-use super::output::results;
+use crate::cli::output::results;
 
 /// Make a new pair of keys, to sign certificates and databases.
 ///

@@ -11,9 +11,9 @@ use netcert::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::fleet::Fleet;
-use super::output::results;
-use super::table::Table;
+use crate::cli::database::fleet::Fleet;
+use crate::cli::output::results;
+use crate::cli::output::table::Table;
 
 /// Show how vehicles turn at low speed, beside published limits: 90°, 180°, a full circle, and steady off-tracking.
 ///

@@ -1,59 +1,39 @@
-//! The command line: one file for each verb. The text of arguments is parsed here, and the library gets typed values.
+//! The command line: one file for each verb. The text of arguments is parsed here, and the library gets typed values. What verbs share lies in
+//! folders: arguments, the database with its vehicles and certificates, what is written, and the session.
 //!
 //! Results go to standard output; progress, counts and warnings go to standard error.
 
-mod area;
+mod arguments;
 mod assemble;
 mod cells;
 mod certify;
-mod certify_options;
-mod clock;
 mod corridor;
 mod database;
 mod diff;
 mod evidence;
 mod explain;
 mod export;
-mod fleet;
 mod ingest;
 mod keygen;
-mod logger;
 mod manoeuvres;
-mod measurements;
-mod on_demand;
 pub(crate) mod output;
 mod paper;
-mod position;
-mod progress;
 mod query;
 mod reach;
-mod relative;
-mod relative_stats;
 mod route;
-mod routing;
-mod rows;
 mod serve;
-mod sheet;
+mod session;
 mod sign;
-mod stage;
 mod stats;
-mod stop;
 mod survey;
-mod table;
-mod turn_rows;
 mod update;
-mod values;
-mod vehicle_args;
 mod vehicles;
 mod verify;
 
-use std::time::Duration;
-
 use clap::{Parser, Subcommand};
-use netcert::watch::{self, Patience};
+use netcert::watch::Patience;
 
-use clock::Clock;
-use progress::Progress;
+pub(crate) use session::Session;
 
 /// Certify which roads of an OpenStreetMap extract an articulated vehicle fits.
 #[derive(Parser)]
@@ -131,27 +111,5 @@ impl Verb {
             }
             _ => Some(""),
         }
-    }
-}
-
-/// The output for people and the clock, which every verb uses.
-pub(crate) struct Session {
-    progress: Progress,
-    clock: Clock,
-}
-
-impl Session {
-    /// Sets the number of threads and the patience, listens for requests to stop, and reads `SOURCE_DATE_EPOCH`.
-    pub(crate) fn begin(cli: &Cli) -> anyhow::Result<Self> {
-        if let Some(then) = cli.verb.when_stopped() {
-            stop::say_when_stopped(then);
-        }
-        let usual = cli.verb.patience();
-        let patience = cli.patience.map(Duration::from_secs).map(|end_after| Patience { end_after, ..usual });
-        watch::set_patience(patience.unwrap_or(usual));
-        if let Some(threads) = cli.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
-        }
-        Ok(Self { progress: Progress::new(cli.quiet), clock: Clock::from_environment()? })
     }
 }

@@ -14,16 +14,16 @@ use netcert::vehicle::Vehicle;
 use netcert::words::{Named, VerdictKind, verdict_words};
 
 use super::Session;
-use super::area;
-use super::database::DatabaseArgs;
-use super::fleet;
-use super::on_demand;
-use super::output::{km, results};
-use super::relative::{self, RelativeArgs};
-use super::rows::{Format, Head, Sink};
-use super::turn_rows;
-use super::values::{metres, signed_metres, word};
-use super::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::arguments::area;
+use crate::cli::arguments::relative::{self, RelativeArgs};
+use crate::cli::arguments::values::{metres, signed_metres, word};
+use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::database::DatabaseArgs;
+use crate::cli::database::fleet;
+use crate::cli::database::on_demand;
+use crate::cli::output::rows::{Format, Head, Sink};
+use crate::cli::output::turn_rows;
+use crate::cli::output::{km, results};
 
 /// List which roads a vehicle may use, and why it may not use the others.
 ///
@@ -267,7 +267,7 @@ impl Totals {
 impl std::fmt::Display for Totals {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let sum: f64 = self.by_verdict.values().sum();
-        write!(f, "{} edges, {} km", super::output::grouped(self.edges), km(sum))?;
+        write!(f, "{} edges, {} km", crate::cli::output::grouped(self.edges), km(sum))?;
         for kind in VerdictKind::ALL {
             if let Some(&metres) = self.by_verdict.get(kind.name()) {
                 write!(f, "; {} {} km ({:.0} %)", kind.name(), km(metres), 100.0 * metres / sum.max(1e-9))?;

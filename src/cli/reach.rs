@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 
 use super::Session;
 use super::explain::wrapped;
-use super::output::{printable, results};
-use super::position::place;
-use super::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::arguments::position::place;
+use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::output::{printable, results};
 
 /// Find the certified roads that a vehicle can reach from a place, and those from which it can come back.
 ///

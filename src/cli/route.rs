@@ -20,12 +20,12 @@ use netcert::words::Named;
 
 use super::Session;
 use super::explain::wrapped;
-use super::output::{printable, results};
-use super::position::place;
-use super::relative::{self, RelativeArgs};
-use super::routing::{RoutingArgs, RoutingInputs};
-use super::sheet;
-use super::table::Table;
+use crate::cli::arguments::position::place;
+use crate::cli::arguments::relative::{self, RelativeArgs};
+use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::output::sheet;
+use crate::cli::output::table::Table;
+use crate::cli::output::{printable, results};
 
 /// Find the best certified route of a vehicle, with one certificate over the whole route, or what blocks it.
 ///

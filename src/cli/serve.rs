@@ -8,9 +8,9 @@ use clap::Args;
 use netcert::serve::{BaseMap, Limits, Options, Server};
 
 use super::Session;
-use super::database::DatabaseArgs;
-use super::output::results;
-use super::stop::stop;
+use crate::cli::database::DatabaseArgs;
+use crate::cli::output::results;
+use crate::cli::session::stop::stop;
 
 /// Show the database on a map in the browser, with vector tiles and a JSON interface.
 ///
@@ -53,7 +53,7 @@ impl Serve {
             (Some(map), Some(text)) => Some(map.named(text)),
             (map, _) => map,
         };
-        super::logger::install();
+        crate::cli::session::logger::install();
         let server = Server::bind(Options {
             db: self.db.path()?,
             before: self.before.clone(),

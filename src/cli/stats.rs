@@ -13,12 +13,12 @@ use netcert::store::{CertifiedSet, Database, Run};
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
 
-use super::database::DatabaseArgs;
-use super::output::{grouped, km, results};
-use super::progress::refusals;
-use super::relative::RelativeArgs;
-use super::relative_stats::{Compared, with_comparison};
-use super::table::Table;
+use crate::cli::arguments::relative::RelativeArgs;
+use crate::cli::database::DatabaseArgs;
+use crate::cli::output::relative_stats::{Compared, with_comparison};
+use crate::cli::output::table::Table;
+use crate::cli::output::{grouped, km, results};
+use crate::cli::session::progress::refusals;
 
 /// Show the kilometres of road that each vehicle may use, by class and verdict, and the runs that made the database.
 ///

@@ -17,12 +17,12 @@ use serde_json::{Value, json};
 
 use super::Session;
 use super::explain::wrapped;
-use super::output::{km, printable, results};
-use super::position::place;
-use super::routing::{RoutingArgs, RoutingInputs};
-use super::rows::csv;
-use super::sheet;
-use super::table::Table;
+use crate::cli::arguments::position::place;
+use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::output::rows::csv;
+use crate::cli::output::sheet;
+use crate::cli::output::table::Table;
+use crate::cli::output::{km, printable, results};
 
 /// Find the measurements that would open most: widths, kerb radii and paved junctions that somebody can measure on site.
 ///

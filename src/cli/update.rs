@@ -9,8 +9,8 @@ use netcert::store::{Database, Run};
 use serde_json::{Value, json};
 
 use super::Session;
-use super::database::DatabaseArgs;
 use super::ingest::Roads;
+use crate::cli::database::DatabaseArgs;
 
 /// Bring a database up to newer map data: changes (.osc, .osc.gz), a folder of replication, or a newer extract.
 ///

@@ -10,9 +10,9 @@ use netcert::vehicle::{Catalogue, Vehicle, VehicleDefinition};
 use serde::Serialize;
 
 use super::Session;
-use super::fleet::Fleet;
-use super::output::results;
-use super::table::Table;
+use crate::cli::database::fleet::Fleet;
+use crate::cli::output::results;
+use crate::cli::output::table::Table;
 
 /// Radii at which offtracking is shown, metres.
 const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];

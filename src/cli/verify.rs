@@ -16,10 +16,10 @@ use netcert::verify::{Checked, Complaint, Request, verify};
 use netcert::words::Named;
 
 use super::Session;
-use super::area::bounds;
-use super::output::{grouped, printable, results};
-use super::table::Table;
-use super::values::word;
+use crate::cli::arguments::area::bounds;
+use crate::cli::arguments::values::word;
+use crate::cli::output::table::Table;
+use crate::cli::output::{grouped, printable, results};
 
 /// A certificate of a million stations has about 700 MB.
 const MAX_FILE_BYTES: u64 = 1 << 30;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::simulate::Simulated;
 use super::timing::{Series, Timing};
-use crate::cli::table::Table;
+use crate::cli::output::table::Table;
 
 pub(super) fn table(out: &mut dyn Write, simulated: &[Simulated], timing: Option<&Timing>) -> io::Result<()> {
     writeln!(out, "Table I: 𝒞 = w_min − (h_Ω + h_Ξ·r_0) from its own numbers, r_0 half the body's length; metres\n")?;

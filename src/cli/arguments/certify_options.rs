@@ -12,7 +12,7 @@ use netcert::stet::Options;
 use netcert::store::{Database, StoreError};
 use serde_json::Value;
 
-use super::values::{metres, word};
+use crate::cli::arguments::values::{metres, word};
 
 #[derive(Args, Default)]
 #[command(next_help_heading = "How certificates are made")]

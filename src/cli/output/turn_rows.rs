@@ -10,14 +10,14 @@ use netcert::turns::KerbSource;
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Map, Value, json};
 
-use super::output::{grouped, printable};
-use super::rows::{self, Format, Head, csv};
+use crate::cli::output::rows::{self, Format, Head, csv};
+use crate::cli::output::{grouped, printable};
 
 /// A turn with its comparison, if there is one.
-pub(super) type Row = (TurnRow, Option<Relative>);
+pub(crate) type Row = (TurnRow, Option<Relative>);
 
 /// Writes all rows.
-pub(super) fn write(format: Format, head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(format: Format, head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
     match format {
         Format::Table => table(head, rows, out),
         Format::Csv => {
@@ -110,7 +110,7 @@ fn members(head: &Head, (row, relative): &Row) -> Map<String, Value> {
 }
 
 /// The number of turns by verdict, in one line.
-pub(super) fn totals(rows: &[Row]) -> String {
+pub(crate) fn totals(rows: &[Row]) -> String {
     let mut by_verdict: BTreeMap<&str, u64> = BTreeMap::new();
     for (row, _) in rows {
         *by_verdict.entry(verdict_words(row.certificate.verdict).0).or_default() += 1;

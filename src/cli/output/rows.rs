@@ -10,8 +10,8 @@ use netcert::rows::{Cell, Column, EdgeRow, Relative};
 use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
-use super::output::printable;
-use super::relative;
+use crate::cli::arguments::relative;
+use crate::cli::output::printable;
 
 /// Form of the answer.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -152,26 +152,26 @@ impl<'h> Sink<'h> {
 
 impl Head {
     /// The header line of CSV.
-    pub(super) fn names(&self, columns: &[Column]) -> String {
+    pub(crate) fn names(&self, columns: &[Column]) -> String {
         let more = if self.relative_to.is_some() { &Relative::COLUMNS[..] } else { &[] };
         columns.iter().chain(more).map(|(name, _)| *name).collect::<Vec<_>>().join(",")
     }
 
     /// The headings of the columns that a table for people has on demand.
-    pub(super) fn heading(&self) -> String {
+    pub(crate) fn heading(&self) -> String {
         let needs = if self.needs { need("needs") } else { String::new() };
         needs + self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"])).as_str()
     }
 
     /// The cells of these columns: what would be enough, metres, and the comparison.
-    pub(super) fn cells(&self, need_m: Option<f64>, relative: Option<Relative>) -> String {
+    pub(crate) fn cells(&self, need_m: Option<f64>, relative: Option<Relative>) -> String {
         let metres = need_m.map_or_else(String::new, |m| format!("{m:.2} m"));
         let needs = if self.needs { need(&metres) } else { String::new() };
         needs + relative.map_or_else(String::new, |relative| padded(&relative::words(relative))).as_str()
     }
 
     /// The member of JSON that names the reference.
-    pub(super) fn member(&self) -> String {
+    pub(crate) fn member(&self) -> String {
         self.relative_to.as_ref().map_or_else(String::new, |id| format!("\"relative_to\":{},", json!(id)))
     }
 }
@@ -186,7 +186,7 @@ fn padded(cells: &[impl AsRef<str>; 2]) -> String {
 }
 
 /// The members of a JSON object with these columns, and after them those of the comparison.
-pub(super) fn members<const N: usize>(
+pub(crate) fn members<const N: usize>(
     columns: &[Column; N],
     cells: [Cell<'_>; N],
     relative: Option<Relative>,
@@ -196,7 +196,7 @@ pub(super) fn members<const N: usize>(
 }
 
 /// A cell of CSV by RFC 4180. Null is an empty cell.
-pub(super) fn csv(value: &Value) -> String {
+pub(crate) fn csv(value: &Value) -> String {
     let text = match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),

@@ -16,9 +16,9 @@ use netcert::reporter::Reporter;
 use netcert::stop::Stop;
 use netcert::watch::{self, Patience};
 
-use super::output::{grouped, tell};
-use super::stage::Stage;
-use super::table::Table;
+use crate::cli::output::table::Table;
+use crate::cli::output::{grouped, tell};
+use crate::cli::session::stage::Stage;
 
 /// Seconds between two lines of a stage where no bar can be shown.
 const LINE_EVERY: Duration = Duration::from_secs(30);

@@ -10,18 +10,18 @@ use netcert::store::{CertifiedSet, Database};
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
 
-use super::output::km;
-use super::table::Table;
+use crate::cli::output::km;
+use crate::cli::output::table::Table;
 
 /// The shown sets beside a reference vehicle.
-pub(super) struct Compared<'a> {
+pub(crate) struct Compared<'a> {
     reference: &'a str,
     sets: Vec<(CertifiedSet, Vec<RelativeCount>)>,
 }
 
 impl<'a> Compared<'a> {
     /// Reads and compares sets, each named by vehicle and policy.
-    pub(super) fn read<'s>(
+    pub(crate) fn read<'s>(
         database: &mut Database,
         sets: impl Iterator<Item = (&'s str, Policy)>,
         reference: &'a str,
@@ -37,7 +37,7 @@ impl<'a> Compared<'a> {
     }
 
     /// Prints kilometres by verdict, and how many of them need no more room than the reference.
-    pub(super) fn tell(&self, out: &mut dyn Write) -> anyhow::Result<()> {
+    pub(crate) fn tell(&self, out: &mut dyn Write) -> anyhow::Result<()> {
         let as_reference = format!(">as {}", self.reference);
         let mut table = Table::new(&["vehicle", "policy", "verdict", ">km", &as_reference, ""]);
         for (set, counts) in &self.sets {
@@ -80,7 +80,7 @@ impl<'a> Compared<'a> {
 }
 
 /// The answer with the comparison in members of its own.
-pub(super) fn with_comparison(mut answer: Value, compared: Option<&Compared<'_>>) -> Value {
+pub(crate) fn with_comparison(mut answer: Value, compared: Option<&Compared<'_>>) -> Value {
     if let Some(compared) = compared {
         answer["relative_to"] = json!(compared.reference);
         answer["relative"] = compared.json();

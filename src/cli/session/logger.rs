@@ -2,7 +2,7 @@
 
 use log::{LevelFilter, Log, Metadata, Record};
 
-use super::output::tell;
+use crate::cli::output::tell;
 
 struct Lines;
 
@@ -22,7 +22,7 @@ impl Log for Lines {
 }
 
 /// Makes this the program's logger.
-pub(super) fn install() {
+pub(crate) fn install() {
     // `set_logger` fails if a logger is installed already; lines then go to that logger.
     if log::set_logger(&Lines).is_ok() {
         log::set_max_level(LevelFilter::Info);

@@ -11,11 +11,11 @@ use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
 use netcert::settings::Settings;
 use netcert::store::Database;
 
-use super::Session;
-use super::database::DatabaseArgs;
-use super::on_demand;
-use super::relative::RelativeArgs;
-use super::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::Session;
+use crate::cli::arguments::relative::RelativeArgs;
+use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
+use crate::cli::database::DatabaseArgs;
+use crate::cli::database::on_demand;
 
 /// The text of `--vehicle` for verbs whose own help does not say it.
 const CERTIFIED_FIRST: &str = "The vehicle; `netcert vehicles list` shows the ids. If this database has not certified it yet, it is \

@@ -10,9 +10,9 @@ use netcert::store::{CertifiedSet, Database, Reference};
 use netcert::words::Named;
 use serde_json::json;
 
-use super::Session;
-use super::certify_options;
-use super::fleet;
+use crate::cli::Session;
+use crate::cli::arguments::certify_options;
+use crate::cli::database::fleet;
 
 /// The vehicle and certificates that a command needs.
 #[derive(Clone, Copy)]

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use netcert::rows::Measurement;
 
-use super::explain::wrapped;
-use super::output::printable;
+use crate::cli::explain::wrapped;
+use crate::cli::output::printable;
 
 /// Prints a line for each measurement.
-pub(super) fn tell(out: &mut dyn Write, all: &[Measurement]) -> std::io::Result<()> {
+pub(crate) fn tell(out: &mut dyn Write, all: &[Measurement]) -> std::io::Result<()> {
     if all.is_empty() {
         return Ok(());
     }

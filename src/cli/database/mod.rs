@@ -1,5 +1,10 @@
 //! Finds the database of a verb: the file of `--db`, or the only database in the current directory.
 
+pub(crate) mod fleet;
+pub(crate) mod measurements;
+pub(crate) mod on_demand;
+pub(crate) mod routing;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;

@@ -8,9 +8,9 @@ use netcert::osm::facts::Policy;
 use netcert::store::Database;
 use netcert::vehicle::Vehicle;
 
-use super::fleet::{self, Fleet};
-use super::on_demand::Wanted;
-use super::values::{local_time, word};
+use crate::cli::arguments::values::{local_time, word};
+use crate::cli::database::fleet::{self, Fleet};
+use crate::cli::database::on_demand::Wanted;
 
 #[derive(Args)]
 pub(crate) struct VehicleArgs {

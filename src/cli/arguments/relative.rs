@@ -8,7 +8,7 @@ use netcert::osm::facts::Policy;
 use netcert::rows::{Cell, CertificateRow, Relative, Standing};
 use netcert::store::{Beside, DRIVABLE_BY, Database, StoreError};
 
-use super::certify_options;
+use crate::cli::arguments::certify_options;
 
 #[derive(Args)]
 pub(crate) struct RelativeArgs {

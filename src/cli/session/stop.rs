@@ -2,10 +2,10 @@
 
 use std::sync::{Mutex, Once, PoisonError, mpsc};
 
-use super::output::tell;
+use crate::cli::output::tell;
 
 /// Returns when the program is asked to stop. Never returns if the system offers no such signal.
-pub(super) async fn stop() {
+pub(crate) async fn stop() {
     listen().await;
 }
 
@@ -44,13 +44,13 @@ static LISTENS: Once = Once::new();
 
 /// When the program is asked to stop, calls `clear` too before it exits. Returns once the program listens, so that nothing made afterwards
 /// is left behind.
-pub(super) fn when_stopped(clear: impl FnOnce() + Send + 'static) {
+pub(crate) fn when_stopped(clear: impl FnOnce() + Send + 'static) {
     ON_STOP.lock().unwrap_or_else(PoisonError::into_inner).0.push(Box::new(clear));
     LISTENS.call_once(begin);
 }
 
 /// From now on a request to stop ends the program at once, with a line that ends in `then`: what becomes of the work.
-pub(super) fn say_when_stopped(then: &'static str) {
+pub(crate) fn say_when_stopped(then: &'static str) {
     ON_STOP.lock().unwrap_or_else(PoisonError::into_inner).1 = then;
     LISTENS.call_once(begin);
 }

@@ -11,7 +11,7 @@ use netcert::vehicle::Vehicle;
 
 /// The form of a sheet.
 #[derive(Clone, Copy)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Table,
     Geojson,
     Page,
@@ -19,7 +19,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// The form that a file's name asks for.
-    pub(super) fn of(path: &Path) -> anyhow::Result<Self> {
+    pub(crate) fn of(path: &Path) -> anyhow::Result<Self> {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
         match ending.as_str() {
             "csv" => Ok(Self::Table),
@@ -32,13 +32,13 @@ impl Kind {
 
 /// The units of a page.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum PageUnits {
+pub(crate) enum PageUnits {
     Metres,
     Feet,
 }
 
 /// The sheet in the form that the file's name asks for.
-pub(super) fn text(
+pub(crate) fn text(
     path: &Path,
     units: PageUnits,
     network: &Network,

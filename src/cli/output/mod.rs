@@ -1,5 +1,11 @@
 //! The two output streams: results go to standard output, everything else to standard error.
 
+pub(crate) mod relative_stats;
+pub(crate) mod rows;
+pub(crate) mod sheet;
+pub(crate) mod table;
+pub(crate) mod turn_rows;
+
 use std::io::{self, BufWriter, StdoutLock, Write};
 
 /// Standard output with a buffer. The caller must flush it and handle the error.

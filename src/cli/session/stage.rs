@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use indicatif::HumanBytes;
 
-use super::output::grouped;
-use super::progress::human;
+use crate::cli::output::grouped;
+use crate::cli::session::progress::human;
 
 /// A stage that runs.
-pub(super) struct Stage {
+pub(crate) struct Stage {
     name: &'static str,
     /// Items in all, or 0 if unknown.
     total: u64,
@@ -18,16 +18,16 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub(super) fn begin(name: &'static str, total: u64, now: Instant) -> Self {
+    pub(crate) fn begin(name: &'static str, total: u64, now: Instant) -> Self {
         Self { name, total, done: 0, began: now, said: now }
     }
 
-    pub(super) fn advance(&mut self, done: u64) {
+    pub(crate) fn advance(&mut self, done: u64) {
         self.done = done.min(self.total);
     }
 
     /// The line when it begins, such as `certificates: 12,345 edges`.
-    pub(super) fn first_line(&self) -> String {
+    pub(crate) fn first_line(&self) -> String {
         if self.total == 0 {
             format!("{} …", self.name)
         } else {
@@ -36,7 +36,7 @@ impl Stage {
     }
 
     /// The next line, if the last one was printed at least `every` ago: what is done, its share, and the time left at this pace.
-    pub(super) fn line(&mut self, now: Instant, every: Duration) -> Option<String> {
+    pub(crate) fn line(&mut self, now: Instant, every: Duration) -> Option<String> {
         if now.saturating_duration_since(self.said) < every {
             return None;
         }
