@@ -28,7 +28,7 @@ pub use file::{Drawn, FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
 pub use laid::{LaidOut, Sections};
 pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
-pub use outline::{from_chord_m, open_ends, outline};
+pub use outline::{open_ends, outline};
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;

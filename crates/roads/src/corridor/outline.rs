@@ -70,7 +70,7 @@ fn thinned(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Distance of a place from the line through two others, metres.
-pub fn from_chord_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+fn from_chord_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let d = [b[0] - a[0], b[1] - a[1]];
     let length = d[0].hypot(d[1]);
     if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }

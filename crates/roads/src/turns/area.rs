@@ -8,11 +8,11 @@
 //! roads of the junction add inside the crossing is made in `crossing`.
 
 use geo::orient::{Direction, Orient};
-use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
+use geo::{BooleanOps, LineString, MultiPolygon, Polygon, Simplify, unary_union};
 
 use super::Reach;
 use super::arm::{Across, Arm};
-use crate::corridor::{Area, from_chord_m, outline};
+use crate::corridor::{Area, outline};
 use crate::osm::facts::Policy;
 
 /// Distance from the node within which the roads' shared part is searched, metres.
@@ -247,21 +247,27 @@ pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], reach: Reach) -
     [before, after].into_iter().flatten().fold(area.clone(), |area, strip| area.union(&strip))
 }
 
-/// The boundary of an area as rings without vertices that add nothing.
+/// The boundary of an area as rings without vertices that add nothing. Each vertex that is left out lies within [`STRAIGHT_M`] of the side
+/// that replaces it. (Unions draw some corners twice, and neither vertex of such a corner may go because of the other.)
 pub(super) fn rings(area: &MultiPolygon) -> Area {
     let rings = area.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
     let open = |ring: &LineString| {
-        let mut ring: Vec<[f64; 2]> = ring.coords().map(|c| [c.x, c.y]).collect();
-        ring.dedup();
-        if ring.first() == ring.last() {
-            ring.pop();
+        let mut ring: Vec<[f64; 2]> = ring.simplify(STRAIGHT_M).coords().map(|c| [c.x, c.y]).collect();
+        ring.pop();
+        // A ring begins anywhere, so its first vertex may add nothing, too.
+        if let [first, second, .., last] = ring[..]
+            && from_side_m(first, last, second) <= STRAIGHT_M
+        {
+            ring.remove(0);
         }
-        let n = ring.len();
-        let corner = |&k: &usize| from_chord_m(ring[k], ring[(k + n - 1) % n], ring[(k + 1) % n]) > STRAIGHT_M;
-        let kept: Vec<usize> = (0..n).filter(corner).collect();
-        kept.into_iter().map(|k| ring[k]).collect::<Vec<_>>()
+        ring
     };
     Area { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
+}
+
+/// Distance of a place from a side, metres.
+fn from_side_m(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    nearest(&[a, b], p).map_or(f64::INFINITY, |(_, m)| m)
 }
 
 /// The crossing of two edge lines, and their directions there.
@@ -352,4 +358,50 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 /// A ring as a polygon that runs counter-clockwise. A union treats rings of the other sense as holes.
 pub(super) fn polygon(ring: &[[f64; 2]]) -> Polygon {
     Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new()).orient(Direction::Default)
+}
+
+#[cfg(test)]
+mod tests {
+    use geo::Area as _;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn ground_m2(area: &Area) -> f64 {
+        let rings = area.rings.iter().map(|ring| polygon(ring).unsigned_area());
+        rings.enumerate().map(|(i, m2)| if i == 0 { m2 } else { -m2 }).sum()
+    }
+
+    /// A cross of two roads. At each of its corners the boundary has several vertices, so near each other as a union may draw them.
+    fn cross(copies: &[(usize, f64)]) -> MultiPolygon {
+        let inner = [(2.0, -2.0), (50.0, -2.0), (50.0, 2.0), (2.0, 2.0), (2.0, 50.0), (-2.0, 50.0)];
+        let outer = [(-2.0, 2.0), (-50.0, 2.0), (-50.0, -2.0), (-2.0, -2.0), (-2.0, -50.0), (2.0, -50.0)];
+        let corners = inner.into_iter().chain(outer);
+        let ring = corners.zip(copies.iter().cycle()).flat_map(|((x, y), &(copies, apart_m))| {
+            (0..=copies).map(move |k| (x + apart_m * k as f64, y - apart_m * (k % 2) as f64))
+        });
+        Polygon::new(ring.collect::<LineString>(), Vec::new()).into()
+    }
+
+    proptest! {
+        /// A lost corner of this cross would add or take 1,152 m².
+        #[test]
+        fn a_corner_that_is_drawn_several_times_stays(
+            copies in prop::collection::vec((0..4_usize, -12.0..-5.0_f64), 1..12),
+        ) {
+            let copies: Vec<(usize, f64)> = copies.into_iter().map(|(n, log)| (n, 10.0_f64.powf(log))).collect();
+            let drawn = cross(&copies);
+            let ring = rings(&drawn);
+            prop_assert!((ground_m2(&ring) - drawn.unsigned_area()).abs() < 0.02, "{:?}", ring.rings);
+        }
+    }
+
+    #[test]
+    fn vertices_on_a_side_go_wherever_the_ring_begins() {
+        let square = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 10.000_001], [0.0, 10.0]];
+        for first in 0..square.len() {
+            let ring: Vec<[f64; 2]> = square.iter().cycle().skip(first).take(square.len()).copied().collect();
+            assert_eq!(rings(&polygon(&ring).into()).rings[0].len(), 4, "{first}");
+        }
+    }
 }
