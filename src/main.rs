@@ -39,6 +39,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Export(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),
         Verb::Manoeuvres(verb) => verb.run(&session),
+        Verb::Corners(verb) => verb.run(&session),
         Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
         Verb::Serve(verb) => verb.run(&session),

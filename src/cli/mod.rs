@@ -7,6 +7,7 @@ mod arguments;
 mod assemble;
 mod cells;
 mod certify;
+mod corners;
 mod corridor;
 mod database;
 mod diff;
@@ -82,6 +83,7 @@ pub(crate) enum Verb {
     Export(export::Export),
     Vehicles(vehicles::Vehicles),
     Manoeuvres(manoeuvres::Manoeuvres),
+    Corners(corners::Corners),
     Paper(paper::Paper),
     Stats(stats::Stats),
     Serve(serve::Serve),
@@ -96,7 +98,12 @@ impl Verb {
     /// How long one stroke, turn or search may take.
     fn patience(&self) -> Patience {
         match self {
-            Self::Ingest(_) | Self::Certify(_) | Self::Survey(_) | Self::Verify(_) | Self::Sign(_) => Patience::REGION,
+            Self::Ingest(_)
+            | Self::Certify(_)
+            | Self::Survey(_)
+            | Self::Verify(_)
+            | Self::Sign(_)
+            | Self::Corners(_) => Patience::REGION,
             _ => Patience::ANSWER,
         }
     }

@@ -8,6 +8,7 @@ mod cli;
 mod columns;
 mod conditional;
 mod conditions_suffice;
+mod corners;
 mod diff;
 mod engines;
 mod evidence;

@@ -7,6 +7,7 @@ use netcert_roads::{corridor, network};
 use netcert_rows as rows;
 use netcert_rows::settings;
 
+mod corners;
 mod job;
 mod least;
 mod narrower;
@@ -18,6 +19,7 @@ mod suppose;
 mod touched;
 mod turns;
 
+pub use corners::{CORNER_ANGLES_DEG, CORNER_WIDTHS_M, Corners};
 pub use job::Job;
 pub use least::{least_of, least_that_does};
 pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, flares};

@@ -20,6 +20,7 @@
 //! | `route` | the leeway along a route, and the route's shape |
 //! | `sheet` | a page to print: a route under conditions |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
+//! | `corners` | the corners that a vehicle takes |
 
 use netcert_base::{verdict, words};
 use netcert_evidence as evidence;
@@ -30,6 +31,7 @@ use netcert_roads::{network, turns};
 
 mod bodies;
 mod chart;
+mod corners;
 mod explanation;
 mod furniture;
 mod lengths;
@@ -46,6 +48,7 @@ mod vehicle;
 mod view;
 
 pub use chart::{Chart, Scale};
+pub use corners::corners;
 pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use lengths::Units;

@@ -78,6 +78,14 @@ impl StrokeLine {
         Ok(Self { stroke, made, closed: facts.closed, direction, carriageway, gradual })
     }
 
+    /// A drawn road, which has nothing beside its corridor.
+    pub(super) fn drawn(stroke: u32, made: StrokeCorridor) -> Self {
+        let c = &made.corridor;
+        let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
+        let [direction, carriageway, first, second] = [own.clone(), own.clone(), own.clone(), own];
+        Self { stroke, made, closed: false, direction, carriageway, gradual: [first, second] }
+    }
+
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
     /// given part.
     pub fn half_widths(&self, strip: Policy, station: usize, opening: Opening) -> [f64; 2] {

@@ -15,9 +15,9 @@ use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
 /// Distance before the meeting place in which paths leave the approach, metres.
-const LEAVE_M: f64 = 86.0;
+pub(super) const LEAVE_M: f64 = 86.0;
 /// Distance after it in which paths have joined the departure, metres.
-const JOIN_M: f64 = 23.0;
+pub(super) const JOIN_M: f64 = 23.0;
 /// Nodes along the two roads within this distance of the turn's node belong to the same junction, metres.
 const COMPLEX_M: f64 = 30.0;
 
@@ -66,6 +66,18 @@ impl Junction {
                 .collect(),
             surface,
         })
+    }
+
+    /// A drawn junction of two roads, with right-hand traffic.
+    pub(super) fn drawn(arms: Arms, kerb_radius_m: f64) -> Self {
+        Self {
+            arms,
+            policy: Policy::Lane,
+            left_hand_traffic: false,
+            kerb_radius_m,
+            surface: None,
+            crossing: Vec::new(),
+        }
     }
 
     /// The drivable area, and the assumed radius of its kerb return, if there is one.

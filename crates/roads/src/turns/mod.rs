@@ -16,6 +16,7 @@
 //! | `islands` | mapped islands, which every area lacks |
 //! | `area` | the drivable area as polygons |
 //! | `crossing` | what the other roads of the junction add to it |
+//! | `drawn` | a corner between two drawn roads, without a map |
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `code` | a path's parameters in one integer |
 //! | `arms` | the two roads of a turn, and the path of each code |
@@ -40,6 +41,7 @@ mod code;
 mod complex;
 mod corridors;
 mod crossing;
+mod drawn;
 mod ends;
 mod facts;
 mod family;
@@ -57,6 +59,7 @@ use std::ops::Range;
 
 pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
+pub use drawn::DrawnCorner;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub use islands::cut_out_of_route;
 pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes, junction_places};
