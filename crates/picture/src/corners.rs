@@ -17,7 +17,7 @@ const COLUMNS: usize = 4;
 /// The radius with the darkest colour, metres.
 const MOST_M: f64 = 25.0;
 /// A picture of one panel is as wide as its texts.
-const LEAST_WIDTH: f64 = 700.0;
+const LEAST_WIDTH: f64 = 800.0;
 const NOTES: [&str; 3] = [
     "0: a sharp corner does. –: no radius up to 25 m does (a kerb return reaches no farther than 15 m along its roads).",
     "The vehicle uses the whole width of both roads, and other traffic waits.",
