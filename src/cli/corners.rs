@@ -4,8 +4,8 @@ use std::io::Write;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use anyhow::{anyhow, bail};
-use clap::{Args, ValueEnum};
+use anyhow::bail;
+use clap::Args;
 use netcert::certify::{CORNER_ANGLES_DEG, CORNER_WIDTHS_M, Corners as Certified};
 use netcert::picture;
 use netcert::stet::{Model, Options};
@@ -14,9 +14,10 @@ use serde_json::{Value, json};
 
 use super::Session;
 use super::explain::wrapped;
+use crate::cli::arguments::values::TableFormat;
 use crate::cli::database::fleet::Fleet;
-use crate::cli::output::results;
 use crate::cli::output::table::Table;
+use crate::cli::output::{results, write_picture};
 
 /// The angles that a turn may have, degrees. A sharper one has no kerb return.
 const ANGLES_DEG: RangeInclusive<f64> = 15.0..=145.0;
@@ -46,18 +47,11 @@ pub(crate) struct Corners {
     #[arg(long, value_name = "DEGREES", num_args = 1.., value_parser = angle)]
     angle: Vec<f64>,
     /// The output format.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    format: TableFormat,
     /// Draw the table of one vehicle into this file.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
 }
 
 /// The angle of a turn, degrees.
@@ -86,18 +80,17 @@ impl Corners {
             tables.push((vehicle, corners));
         }
         if let (Some(path), [(vehicle, corners)]) = (&self.svg, tables.as_slice()) {
-            std::fs::write(path, picture::corners(vehicle, corners))
-                .map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))?;
+            write_picture(path, &picture::corners(vehicle, corners))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         let mut out = results();
         match self.format {
-            Format::Json => {
+            TableFormat::Json => {
                 let all: Vec<Value> = tables.iter().map(|(v, corners)| json_of(v, corners)).collect();
                 writeln!(out, "{:#}", json!({"corners": all}))?;
             }
-            Format::Csv => csv(&mut out, &tables)?,
-            Format::Text => tables.iter().try_for_each(|(v, corners)| write_text(&mut out, v, corners))?,
+            TableFormat::Csv => csv(&mut out, &tables)?,
+            TableFormat::Text => tables.iter().try_for_each(|(v, corners)| write_text(&mut out, v, corners))?,
         }
         Ok(out.flush()?)
     }
@@ -118,7 +111,7 @@ fn write_text(out: &mut dyn Write, vehicle: &Vehicle, corners: &Certified) -> st
         table.write(out, "  ")?;
         writeln!(out)?;
     }
-    let scope = "0: a sharp corner does. –: no radius up to 25 m does; a kerb return reaches no farther than 15 m along its roads. Two straight \
+    let scope = "0: a sharp corner does. –: no radius up to 25 m is certified; a kerb return reaches no farther than 15 m along its roads. Two straight \
                  roads cross, the vehicle uses the whole width of both, and other traffic waits. Each value holds within the stated model and the \
                  vehicle's error bounds. For a corner on the map it is an estimate, and it is no permit.";
     writeln!(out, "{}\n", wrapped(scope, ""))

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
 use netcert::explain::{self, Explanation, TurnExplanation};
 use netcert::network::Network;
@@ -25,7 +25,7 @@ use crate::cli::arguments::vehicle_args::{PolicyArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::measurements;
 use crate::cli::output::table::Table;
-use crate::cli::output::{printable, results};
+use crate::cli::output::{self, printable, results};
 
 /// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;
@@ -151,7 +151,7 @@ impl Explain {
             let Some(svg) = picture::turn(turn) else {
                 bail!("{}: there is nothing to draw: {}", out.display(), words.headline);
             };
-            std::fs::write(out, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", out.display()))?;
+            output::write_picture(out, &svg)?;
             session.progress.say(&format!("{}: the picture", out.display()));
         }
         let mut out = results();
@@ -348,5 +348,5 @@ pub(super) fn write_picture(path: &std::path::Path, explanation: &Explanation) -
         let words = explain::words(explanation);
         bail!("{}: there is nothing to draw: {}", path.display(), words.headline);
     };
-    std::fs::write(path, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))
+    output::write_picture(path, &svg)
 }

@@ -3,17 +3,18 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{anyhow, bail};
-use clap::{Args, ValueEnum};
+use anyhow::bail;
+use clap::Args;
 use netcert::manoeuvres::{self, Finding, Measure, Report, STEADY_RADII_M, Swept, beyond_limit};
 use netcert::picture;
 use netcert::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::Session;
+use crate::cli::arguments::values::TableFormat;
 use crate::cli::database::fleet::Fleet;
-use crate::cli::output::results;
 use crate::cli::output::table::Table;
+use crate::cli::output::{results, write_picture};
 
 /// Show how vehicles turn at low speed, beside published limits: 90°, 180°, a full circle, and steady off-tracking.
 ///
@@ -37,18 +38,11 @@ pub(crate) struct Manoeuvres {
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
     /// The output format.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    format: TableFormat,
     /// Draw the turns of one vehicle into this file.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
 }
 
 impl Manoeuvres {
@@ -62,20 +56,19 @@ impl Manoeuvres {
             let [vehicle] = vehicles.as_slice() else {
                 bail!("--svg draws one vehicle; name that vehicle with --vehicle");
             };
-            std::fs::write(path, picture::manoeuvres(vehicle))
-                .map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))?;
+            write_picture(path, &picture::manoeuvres(vehicle))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         let reports: Vec<(&Vehicle, Report)> = vehicles.iter().map(|v| (*v, manoeuvres::report(v))).collect();
         let mut out = results();
         match (self.format, reports.as_slice()) {
-            (Format::Json, all) => {
+            (TableFormat::Json, all) => {
                 let all: Vec<Value> = all.iter().map(|(v, report)| json(v, report)).collect();
                 writeln!(out, "{:#}", json!({"manoeuvres": all}))?;
             }
-            (Format::Csv, all) => csv(&mut out, all)?,
-            (Format::Text, [(vehicle, report)]) => one(&mut out, vehicle, report)?,
-            (Format::Text, all) => many(&mut out, all)?,
+            (TableFormat::Csv, all) => csv(&mut out, all)?,
+            (TableFormat::Text, [(vehicle, report)]) => one(&mut out, vehicle, report)?,
+            (TableFormat::Text, all) => many(&mut out, all)?,
         }
         Ok(out.flush()?)
     }

@@ -60,7 +60,7 @@ pub(crate) struct Cli {
     #[arg(long, global = true, display_order = 901, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// End one stroke, turn or search after so many seconds of processor time; its verdict is `unknown: took_too_long` [default: 600 for
-    /// `ingest`, `certify` and `survey`, 120 for other verbs].
+    /// `ingest`, `certify`, `survey`, `verify`, `sign` and `corners`, 120 for other verbs].
     #[arg(long, global = true, display_order = 902, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(..=1_000_000))]
     patience: Option<u64>,
     #[command(subcommand)]

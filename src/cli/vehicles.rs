@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use super::Session;
 use crate::cli::database::fleet::Fleet;
-use crate::cli::output::results;
 use crate::cli::output::table::Table;
+use crate::cli::output::{results, write_picture};
 
 /// Radii at which offtracking is shown, metres.
 const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];
@@ -84,8 +84,7 @@ impl Vehicles {
                 let fleet = Fleet::new(vehicle_file)?;
                 let vehicle = fleet.catalogue.get(id)?;
                 if let Some(path) = svg {
-                    std::fs::write(path, picture::vehicle(vehicle))
-                        .map_err(|e| anyhow::anyhow!("{}: cannot write the picture: {e}", path.display()))?;
+                    write_picture(path, &picture::vehicle(vehicle))?;
                     session.progress.say(&format!("{}: the picture", path.display()));
                 }
                 show(vehicle, *format)

@@ -64,7 +64,7 @@ impl Corners {
         &self.angles_deg
     }
 
-    /// The least kerb radius at a corner, metres; 0: a sharp corner does. `None` if no radius up to 25 m does. The numbers are places in
+    /// The least kerb radius at a corner, metres; 0: a sharp corner does. `None` if no radius up to 25 m is certified. The numbers are places in
     /// [`Self::angles_deg`] and [`CORNER_WIDTHS_M`]: the angle, the road that is left, the road that is entered.
     #[must_use]
     pub fn least_m(&self, angle: usize, from: usize, to: usize) -> Option<f64> {

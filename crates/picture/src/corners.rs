@@ -19,7 +19,7 @@ const MOST_M: f64 = 25.0;
 /// A picture of one panel is as wide as its texts.
 const LEAST_WIDTH: f64 = 800.0;
 const NOTES: [&str; 3] = [
-    "0: a sharp corner does. –: no radius up to 25 m does (a kerb return reaches no farther than 15 m along its roads).",
+    "0: a sharp corner does. –: no radius up to 25 m is certified (a kerb return reaches no farther than 15 m along its roads).",
     "The vehicle uses the whole width of both roads, and other traffic waits.",
     "Each value holds within the stated model and the vehicle's error bounds; for a corner on the map it is an estimate.",
 ];

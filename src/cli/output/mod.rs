@@ -7,6 +7,9 @@ pub(crate) mod table;
 pub(crate) mod turn_rows;
 
 use std::io::{self, BufWriter, StdoutLock, Write};
+use std::path::Path;
+
+use anyhow::anyhow;
 
 /// Standard output with a buffer. The caller must flush it and handle the error.
 pub(crate) fn results() -> BufWriter<StdoutLock<'static>> {
@@ -21,6 +24,11 @@ pub(crate) fn tell(text: &str) {
 /// Prints an error. Every error message is complete in itself: what failed, where, and what the user can do.
 pub(crate) fn complain(error: &anyhow::Error) {
     tell(&format!("error: {error}"));
+}
+
+/// Writes a picture into a file.
+pub(crate) fn write_picture(path: &Path, svg: &str) -> anyhow::Result<()> {
+    std::fs::write(path, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))
 }
 
 /// Whether the reader of the results has closed the pipe, as in `netcert query … | head`.
