@@ -8,7 +8,7 @@
 //! roads of the junction add inside the crossing is made in `crossing`.
 
 use geo::orient::{Direction, Orient};
-use geo::{BooleanOps, LineString, MultiPolygon, Polygon, Simplify, unary_union};
+use geo::{Area as _, BooleanOps, Euclidean, Length, LineString, MultiPolygon, Polygon, Simplify, unary_union};
 
 use super::Reach;
 use super::arm::{Across, Arm};
@@ -248,21 +248,39 @@ pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], reach: Reach) -
 }
 
 /// The boundary of an area as rings without vertices that add nothing. Each vertex that is left out lies within [`STRAIGHT_M`] of the side
-/// that replaces it. (Unions draw some corners twice, and neither vertex of such a corner may go because of the other.)
+/// that replaces it. (Unions draw some corners twice, and neither vertex of such a corner may go because of the other.) A ring that would
+/// enclose other ground without them keeps all its vertices.
 pub(super) fn rings(area: &MultiPolygon) -> Area {
     let rings = area.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
     let open = |ring: &LineString| {
-        let mut ring: Vec<[f64; 2]> = ring.simplify(STRAIGHT_M).coords().map(|c| [c.x, c.y]).collect();
-        ring.pop();
-        // A ring begins anywhere, so its first vertex may add nothing, too.
-        if let [first, second, .., last] = ring[..]
-            && from_side_m(first, last, second) <= STRAIGHT_M
-        {
-            ring.remove(0);
-        }
-        ring
+        let short = without_first(vertices(&ring.simplify(STRAIGHT_M)));
+        let all = vertices(ring);
+        if encloses_the_same(&short, &all) { short } else { all }
     };
     Area { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
+}
+
+/// The vertices of a closed ring, each once.
+fn vertices(ring: &LineString) -> Vec<[f64; 2]> {
+    let mut ring: Vec<[f64; 2]> = ring.coords().map(|c| [c.x, c.y]).collect();
+    ring.pop();
+    ring
+}
+
+/// A ring begins anywhere, so its first vertex may add nothing, too.
+fn without_first(mut ring: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    if let [first, second, .., last] = ring[..]
+        && from_side_m(first, last, second) <= STRAIGHT_M
+    {
+        ring.remove(0);
+    }
+    ring
+}
+
+/// Whether the grounds of two rings differ by no more than vertices within [`STRAIGHT_M`] of the boundary can add or take.
+fn encloses_the_same(short: &[[f64; 2]], all: &[[f64; 2]]) -> bool {
+    let [short, all] = [short, all].map(polygon);
+    (short.unsigned_area() - all.unsigned_area()).abs() <= STRAIGHT_M * Euclidean.length(all.exterior())
 }
 
 /// Distance of a place from a side, metres.
@@ -362,7 +380,6 @@ pub(super) fn polygon(ring: &[[f64; 2]]) -> Polygon {
 
 #[cfg(test)]
 mod tests {
-    use geo::Area as _;
     use proptest::prelude::*;
 
     use super::*;
@@ -393,6 +410,17 @@ mod tests {
             let drawn = cross(&copies);
             let ring = rings(&drawn);
             prop_assert!((ground_m2(&ring) - drawn.unsigned_area()).abs() < 0.02, "{:?}", ring.rings);
+        }
+    }
+
+    /// What was left out once: all vertices beside a side at once, and with them a corner that a union drew twice.
+    #[test]
+    fn a_ring_that_lost_a_corner_does_not_enclose_the_same() {
+        let all = vertices(cross(&[(1, 1e-9)]).0[0].exterior());
+        let without = |corner: usize| [&all[..2 * corner], &all[2 * corner + 2..]].concat();
+        assert!(encloses_the_same(&rings(&cross(&[(1, 1e-9)])).rings[0], &all));
+        for corner in 0..12 {
+            assert!(!encloses_the_same(&without(corner), &all), "corner {corner}");
         }
     }
 
