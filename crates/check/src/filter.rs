@@ -39,7 +39,9 @@ pub(crate) struct Filter {
 impl Filter {
     /// A filter with its tubes, which have no steps yet.
     pub(crate) fn new(chain: &Chain, spacing: f64, tolerance_m: f64) -> (Self, Tubes) {
-        (Self::settled(chain, tolerance_m), Tubes::new(chain.links.len(), spacing / STEPS as f64, 0, tolerance_m))
+        let filter = Self::settled(chain, tolerance_m);
+        let tubes = Tubes::new(filter.anew(), spacing / STEPS as f64, 0, tolerance_m);
+        (filter, tubes)
     }
 
     /// A filter after a straight of any length.
@@ -65,7 +67,13 @@ impl Filter {
             *end = before(unit).map_or(*end, |tube| tube.extra);
         }
         (filter.loose_rad, filter.lidded) = (self.loose_rad, self.lidded);
-        (filter, Tubes::new(chain.links.len(), wider.step_m, first, tolerance_m))
+        let tubes = Tubes::new(filter.anew(), wider.step_m, first, tolerance_m);
+        (filter, tubes)
+    }
+
+    /// Y of each unit where the filter begins anew.
+    fn anew(&self) -> Vec<f64> {
+        self.gains.iter().zip(&self.settled).map(|(gains, settled)| (gains[0] + settled) * UP).collect()
     }
 
     /// Whether no tube comes from the adjoint.

@@ -24,6 +24,8 @@ pub(crate) struct Tubes {
     /// The first step stored.
     pub(crate) first: usize,
     pub(crate) tolerance_m: f64,
+    /// Y of each unit after a straight of any length. It holds where the bounds begin anew, after a step that has none.
+    pub(crate) anew: Vec<f64>,
     units: usize,
     tubes: Vec<Option<Tube>>,
     coefficients: Vec<Coefficients>,
@@ -31,8 +33,8 @@ pub(crate) struct Tubes {
 
 impl Tubes {
     /// No steps yet.
-    pub(crate) fn new(units: usize, step_m: f64, first: usize, tolerance_m: f64) -> Self {
-        Self { step_m, first, tolerance_m, units, tubes: Vec::new(), coefficients: Vec::new() }
+    pub(crate) fn new(anew: Vec<f64>, step_m: f64, first: usize, tolerance_m: f64) -> Self {
+        Self { step_m, first, tolerance_m, units: anew.len(), anew, tubes: Vec::new(), coefficients: Vec::new() }
     }
 
     /// Makes room for so many more steps.
