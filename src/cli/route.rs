@@ -420,6 +420,10 @@ fn blocked(
     let Some(obstacles) = &answer.obstacles else {
         return writeln!(out, "  No roads lead there at all, lawful turns and one-way roads considered.\n");
     };
+    if answer.conditions_cut_short {
+        let told = "The search for a route under conditions took too long and was ended; `--patience SECONDS` gives it more time.";
+        writeln!(out, "{}", wrapped(told, "  "))?;
+    }
     if answer.gave_up {
         writeln!(out, "  Given up after {} whole routes that failed; --tries allows more.", answer.refuted.len())?;
     }

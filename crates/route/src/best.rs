@@ -6,10 +6,11 @@ use crate::stop::Stop;
 
 impl Planner {
     /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
-    /// longer. A place that is near no safe road may be near a lawful one.
+    /// longer. A place that is near no safe road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks
+    /// the way.
     ///
     /// # Errors
-    /// A place is near no road that the vehicle may use, or `stop` was told.
+    /// A place is near no road that the vehicle may use, or `stop` was told before it was known what blocks the way.
     pub fn best_answer(
         &mut self,
         question: &Question,
@@ -24,11 +25,14 @@ impl Planner {
             return Ok(certified?);
         }
         let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
-        let Ok(Conditional { route, conditions, suffices, snapped }) =
-            self.search_conditions(question, refuted, stop, searching)?
-        else {
-            return Ok(certified?);
+        let searched = match self.search_conditions(question, refuted, stop, searching) {
+            // What blocks the way is known, and stays an answer.
+            Err(Unanswered::Stopped(_)) if certified.is_ok() => {
+                return Ok(Answer { conditions_cut_short: true, ..certified? });
+            }
+            searched => searched?,
         };
+        let Ok(Conditional { route, conditions, suffices, snapped }) = searched else { return Ok(certified?) };
         // A way that passes without any condition is a certified route.
         if conditions.is_empty() {
             return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });

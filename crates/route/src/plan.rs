@@ -82,6 +82,8 @@ pub struct Answer {
     pub blocked: Option<BlockedWay>,
     /// A route that is certified only under conditions, if one was asked for and there is no other.
     pub conditional: Option<Conditional>,
+    /// Whether the search for a route under conditions was ended before it was through.
+    pub conditions_cut_short: bool,
     /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,
 }

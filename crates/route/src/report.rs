@@ -302,6 +302,7 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
         "places": snapped.collect::<Vec<_>>(),
         "refuted": answer.refuted.iter().map(|r| refutation_members(network, r)).collect::<Vec<_>>(),
         "gave_up": answer.gave_up,
+        "conditions_cut_short": answer.conditions_cut_short,
         "obstacles": answer.obstacles.as_ref().map(|all| all.iter().map(|o| obstacle_members(network, &model.vehicle, o)).collect::<Vec<_>>()),
     })
 }

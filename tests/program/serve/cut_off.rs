@@ -138,7 +138,7 @@ fn a_route_is_whole_or_is_not_there() {
     assert!(stops > 15, "it asked fewer than {asked} times");
 }
 
-/// A search for a route under conditions that is stopped has no answer, and one that is not has the whole.
+/// A search for a route under conditions that is stopped says what blocks the way, and one that is not has the whole.
 #[test]
 fn a_route_under_conditions_is_whole_or_is_not_there() {
     let (_place, mut database, network, model, settings) = wide_for("AU-ATRIPLE53");
@@ -150,10 +150,14 @@ fn a_route_under_conditions_is_whole_or_is_not_there() {
     let whole = loop {
         let mut begun = false;
         match planner.best_answer(&question, &Stop::after(asked), || begun = true) {
+            Ok(answer) if answer.conditions_cut_short => {
+                assert!(begun && answer.routes.is_empty() && answer.conditional.is_none());
+                assert!(answer.obstacles.is_some_and(|obstacles| !obstacles.is_empty()));
+                searched += 1;
+            }
             Ok(whole) => break whole,
-            Err(unanswered) => assert_eq!(unanswered, Unanswered::Stopped(Stopped)),
+            Err(unanswered) => assert_eq!((begun, unanswered), (false, Unanswered::Stopped(Stopped))),
         }
-        searched += usize::from(begun);
         asked *= 2;
     };
     assert!(searched > 1, "it was never stopped while it looked for conditions");
