@@ -142,6 +142,20 @@ fn a_way_needs_what_its_sections_need() {
     assert!(places(&whole).iter().all(|at| parts.contains(at)), "{whole:?}: {first:?}, {second:?}");
 }
 
+/// Sections are fitted on several threads.
+#[test]
+fn the_number_of_threads_changes_no_condition() {
+    let region = region(&two_crossings(), 3.0);
+    let on_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| ask(&region, "AU-SEMI19", ["Wa", "bE"]).under.unwrap())
+    };
+    let [one, three] = [1, 3].map(on_threads);
+    assert!(!one.conditions.is_empty());
+    assert_eq!((one.conditions, one.suffices, one.route.path), (three.conditions, three.suffices, three.route.path));
+    assert_eq!(one.route.certificate, three.route.certificate);
+}
+
 #[test]
 fn the_widths_along_one_road_are_one_condition() {
     // Three pieces of one road, narrower and narrower.

@@ -263,6 +263,11 @@ impl Strokes {
         &self.roads.network
     }
 
+    /// Lets go of the roads. [`Self::go_on_with`] must follow.
+    pub(super) fn let_go_of_roads(&mut self) {
+        self.roads = Arc::default();
+    }
+
     /// Goes on with roads that differ from the earlier ones by their site. The lines of these strokes are made again.
     pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, changed: impl Fn(u32) -> bool) {
         self.roads = Arc::clone(roads);

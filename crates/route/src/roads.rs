@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::network::{Movements, Network};
 
 /// A network and its movements. Planners of one region share them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Roads {
     /// Edges, roads and strokes.
     pub network: Network,

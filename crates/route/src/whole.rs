@@ -60,6 +60,12 @@ impl Whole {
         Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns) }
     }
 
+    /// Lets go of the roads, so that their network can be changed. [`Self::go_on_with`] must follow.
+    pub(super) fn let_go_of_roads(&mut self) {
+        self.roads = Arc::default();
+        self.strokes.let_go_of_roads();
+    }
+
     /// Goes on with roads on which these edges have other widths, and nodes at these positions other corners or surfaces. What lies
     /// beside them is made again.
     pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<u32>, nodes: &[LonLat]) {
@@ -131,8 +137,16 @@ impl Whole {
         Ok(Ok(Looked { path, results }))
     }
 
-    /// The certificate of a way over the whole, if it is safe, with the plan that is best for its parts.
-    pub(super) fn prove(&self, path: RoutePath, stop: &Stop) -> Result<Option<Certified>, Stopped> {
+    /// The certificate of a way over the whole, if it is safe, with the plan that is best for its parts. Turns have the chosen paths, unless
+    /// two of them overlap; then others are chosen.
+    pub(super) fn prove(
+        &mut self,
+        way: &Way<'_>,
+        choices: &Choices,
+        stop: &Stop,
+    ) -> Result<Option<Certified>, Stopped> {
+        self.menu.choose(choices);
+        let Ok(path) = self.joined(way, stop)? else { return Ok(None) };
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
         let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
         let safe = certified.filter(|(certificate, _)| certificate.result.safe());

@@ -59,8 +59,9 @@ pub use results::{Certificate, Limiting, Planned, SpanResult};
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
+use held::swept_as_one;
 use marked::Marks;
-use stretches::best_swept;
+use stretches::{best_swept, swept_by_stretches};
 
 /// Certifies vehicles over `spans` of stations. Each vehicle drives the whole corridor by itself, and each gets one
 /// row.
@@ -95,7 +96,8 @@ pub fn certify(
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
-/// The result of one vehicle for each span, as [`certify_planned`] gives it.
+/// The result of one vehicle for each span. Where all spans are safe, [`certify_planned`] says so, too. Where a span fails and several stretches
+/// were planned by themselves, one plan for all of them is not tried: on a long route it takes most of the time, and rarely helps.
 ///
 /// # Errors
 /// `stop` was told: each sweep asks it every few metres.
@@ -109,7 +111,8 @@ pub fn certify_parts(
     if corridor.is_empty() {
         return Ok(Vec::new());
     }
-    let (_, results) = best_swept(corridor, model, spans, Marks::Ends, options, stop);
+    let by_stretches = swept_by_stretches(corridor, model, spans, Marks::Ends, options, stop);
+    let (_, results) = by_stretches.unwrap_or_else(|| swept_as_one(corridor, model, spans, Marks::Ends, options, stop));
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(results)

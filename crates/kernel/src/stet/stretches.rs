@@ -28,12 +28,7 @@ pub(super) fn best_swept<'m>(
     options: &Options,
     stop: &'m Stop,
 ) -> (Swept<'m>, Vec<SpanResult>) {
-    let joined = plan(corridor, model, spans, options, stop).map(|plan| {
-        let swept = Swept::along(corridor, model, spans, marks, stop, |_| plan);
-        let results = swept.results();
-        (swept, results)
-    });
-    match joined {
+    match swept_by_stretches(corridor, model, spans, marks, options, stop) {
         None => swept_as_one(corridor, model, spans, marks, options, stop),
         Some(joined) if safe(&joined.1) == spans.len() => joined,
         Some(joined) => {
@@ -41,6 +36,21 @@ pub(super) fn best_swept<'m>(
             if safe(&joined.1) > safe(&whole.1) { joined } else { whole }
         }
     }
+}
+
+/// The sweep along the plans of all stretches. `None` if there is one stretch only, or nothing is to be corrected.
+pub(super) fn swept_by_stretches<'m>(
+    corridor: &Corridor,
+    model: &'m Model,
+    spans: &'m [Range<usize>],
+    marks: Marks,
+    options: &Options,
+    stop: &'m Stop,
+) -> Option<(Swept<'m>, Vec<SpanResult>)> {
+    let plan = plan(corridor, model, spans, options, stop)?;
+    let swept = Swept::along(corridor, model, spans, marks, stop, |_| plan);
+    let results = swept.results();
+    Some((swept, results))
 }
 
 /// The plan of a corridor that has several stretches. `None` if it has one only, or nothing is to be corrected.
@@ -120,7 +130,7 @@ mod tests {
 
     use super::*;
     use crate::stet::plane::tests::as_area;
-    use crate::stet::{certify_parts, certify_spans};
+    use crate::stet::{certify_parts, certify_planned, certify_spans};
 
     const SPACING_M: f64 = 0.5;
     const FIRST: Range<usize> = 120..420;
@@ -161,7 +171,10 @@ mod tests {
         let mut judged = 0;
         for half_m in (0..25).map(|step| [2.4 + 0.1 * f64::from(step / 5), 2.2 + 0.1 * f64::from(step % 5)]) {
             let corridor = two_bends(half_m);
-            let whole = certify_parts(&corridor, &model, &[FIRST, SECOND], &options, &Stop::default()).unwrap();
+            let (spans, stop) = ([FIRST, SECOND], Stop::default());
+            let (_, whole) = certify_planned(&corridor, &model, &spans, &options, &stop).unwrap().unwrap();
+            let parts = certify_parts(&corridor, &model, &spans, &options, &stop).unwrap();
+            assert!(safe(&parts) < 2 || safe(&whole) == 2, "{half_m:?}: {parts:?} {whole:?}");
             for (span, result) in [FIRST, SECOND].into_iter().zip(&whole) {
                 let slice = span.start - 120..span.end + 120;
                 let alone = sliced(&corridor, slice.clone());

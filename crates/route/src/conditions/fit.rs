@@ -9,10 +9,12 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::failing::{Failing, failing};
+use super::failing::failing;
 use super::joint;
+use super::mend::Parted;
 use super::parts::TurnKey;
 use super::sections::{Section, sections};
+use super::stretch::ROUNDS;
 use super::suppositions::Suppositions;
 use crate::assemble::{PartKind, Way};
 use crate::drive::Drive;
@@ -23,13 +25,8 @@ use crate::obstacles::Refutation;
 use crate::pieces::Choices;
 use crate::roads::Roads;
 use crate::stop::{Stop, Stopped};
-use crate::turning::MadeTurns;
-use crate::whole::{Certified, Looked, Whole};
+use crate::whole::{Certified, Whole};
 
-/// How many paths of a turn are tried beside the best one.
-const MORE_PATHS: usize = 2;
-/// How often a way is tried, each time with more supposed where it failed.
-const ROUNDS: usize = 12;
 /// A leg between two turns that is as much longer than the vehicle parts a way, metres.
 const APART_M: f64 = 80.0;
 
@@ -37,17 +34,20 @@ const APART_M: f64 = 80.0;
 pub(crate) struct Fitter {
     pub(super) roads: Arc<Roads>,
     pub(super) driver: Arc<Driver>,
-    base: Arc<network::Site>,
+    pub(super) base: Arc<network::Site>,
     pub(super) stroke_of: Arc<[u32]>,
     /// The widths that edges need.
     pub(super) needs_m: FxHashMap<u32, Option<f64>>,
     /// What turns need; `None` if nothing does.
     pub(super) turns: FxHashMap<TurnKey, Option<Suppositions>>,
-    /// Sections with what their edges and turns need by themselves, and with what the whole section needs.
+    /// Sections with what their edges and turns need by themselves, with enough to be safe, and with the least that was found for it.
     supposed: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
+    safe: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
     settled: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
     /// What was certified last, and what was supposed there.
-    whole: Option<(Whole, Suppositions)>,
+    pub(super) whole: Option<(Whole, Suppositions)>,
+    /// Fitters that work beside this one, each on a network of its own.
+    pub(super) helpers: Vec<Self>,
 }
 
 /// The edges of a section, the arcs of its passages, its ends, and which edges and steps have a price.
@@ -71,8 +71,8 @@ pub(super) struct Unfit(pub(super) Vec<PartKind>);
 #[derive(Clone)]
 pub(super) struct Fitting {
     pub(super) drive: Drive,
-    start: f64,
-    end: f64,
+    pub(super) start: f64,
+    pub(super) end: f64,
     pub(super) supposed: Suppositions,
     /// How often it has failed.
     pub(super) round: usize,
@@ -80,7 +80,7 @@ pub(super) struct Fitting {
 }
 
 impl Fitting {
-    fn new(base: &Arc<network::Site>, way: &Way<'_>) -> Self {
+    pub(super) fn new(base: &Arc<network::Site>, way: &Way<'_>) -> Self {
         Self {
             drive: way.drive.clone(),
             start: way.start,
@@ -91,7 +91,7 @@ impl Fitting {
         }
     }
 
-    fn fitted(self, certified: Certified, suffices: bool) -> Fitted {
+    pub(super) fn fitted(self, certified: Certified, suffices: bool) -> Fitted {
         Fitted { drive: self.drive, certified, supposed: self.supposed, suffices }
     }
 
@@ -107,16 +107,29 @@ impl Fitting {
 impl Fitter {
     pub(super) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
         let base = Arc::new(roads.network.site.clone());
+        let stroke_of = roads.network.strokes_of_edges().into();
+        Self::beside(roads, driver, base, stroke_of)
+    }
+
+    /// A fitter that knows nothing yet, on roads whose known site is `base`.
+    pub(super) fn beside(
+        roads: &Arc<Roads>,
+        driver: &Arc<Driver>,
+        base: Arc<network::Site>,
+        stroke_of: Arc<[u32]>,
+    ) -> Self {
         Self {
             roads: Arc::clone(roads),
             driver: Arc::clone(driver),
             base,
-            stroke_of: roads.network.strokes_of_edges().into(),
+            stroke_of,
             needs_m: FxHashMap::default(),
             turns: FxHashMap::default(),
             supposed: FxHashMap::default(),
+            safe: FxHashMap::default(),
             settled: FxHashMap::default(),
             whole: None,
+            helpers: Vec::new(),
         }
     }
 
@@ -132,45 +145,30 @@ impl Fitter {
         {
             return Ok(Ok(fitted));
         }
-        let long_m = self.driver.model.vehicle.length_m + APART_M;
-        let sections = sections(&self.roads.network, &self.roads.movements, way, long_m);
-        // Where nothing does for a place, nothing needs to be known of other sections.
-        let mut unfit = Vec::new();
-        for section in &sections {
-            unfit.extend(self.suppose(section, access, stop)?.err().into_iter().flat_map(|Unfit(places)| places));
-        }
-        if !unfit.is_empty() {
-            return Ok(Err(Unfit(unfit)));
-        }
-        let mut whole = Fitting::new(&self.base, way);
-        whole.drive.over.clear();
-        for section in &sections {
-            match self.settle(section, access, stop)? {
-                Ok(own) => whole.take_over(&own, section.first),
-                Err(unfit) => return Ok(Err(unfit)),
-            }
-        }
-        // Fewer conditions first. The answer is made from nothing that was made before.
-        let mut level = whole.clone();
-        level.supposed.level_roads(&self.roads.network, &whole.drive.edges);
-        // Where less does on the whole, each edge and turn may also get what it needs by itself.
-        let mut generous = whole.supposed.clone();
-        for section in &sections {
-            if let Ok(own) = self.suppose(section, access, stop)? {
-                generous.add(&own.supposed);
-            }
-        }
-        for supposed in [level.supposed.clone(), whole.supposed.clone(), generous] {
-            if let Some(fitted) = self.as_measured(way, supposed, stop)? {
-                return Ok(Ok(fitted));
-            }
+        let sections = self.sections(way);
+        // Where nothing does for a place, nothing needs to be known of other sections. Least work comes first.
+        let own = match self.supposed_for(&sections, access, stop)? {
+            Ok(own) => own,
+            Err(unfit) => return Ok(Err(unfit)),
+        };
+        let safe = match self.safe_for(&sections, &own, access, stop)? {
+            Ok(safe) => safe,
+            Err(unfit) => return Ok(Err(unfit)),
+        };
+        let least = match self.least_for(&sections, &safe, access, stop)? {
+            Ok(least) => least,
+            Err(unfit) => return Ok(Err(unfit)),
+        };
+        let mut whole = self.joined(way, &sections, &least);
+        whole.supposed.level_roads(&self.roads.network, &whole.drive.edges);
+        let more: Vec<Suppositions> =
+            own.iter().zip(&safe).map(|(own, safe)| own.supposed.with(&safe.supposed)).collect();
+        let parted = Parted { way, sections: &sections, more: &more };
+        match self.mended(&parted, whole.supposed.clone(), stop)? {
+            Ok(fitted) => return Ok(Ok(fitted)),
+            Err(supposed) => whole.supposed.add(&supposed),
         }
         // No search with nothing supposed is known to find these once they are measured.
-        for whole in [level, whole.clone()] {
-            if let Some(certified) = self.fresh(&whole, stop)? {
-                return Ok(Ok(whole.fitted(certified, false)));
-            }
-        }
         if let Some(at) = self.suppose_until_safe(&mut whole, stop)? {
             return Ok(Err(Unfit(joint::parted(way.drive, at))));
         }
@@ -181,68 +179,83 @@ impl Fitter {
         })
     }
 
-    /// The way under what is supposed, if it is safe. What is supposed counts as if it were measured: when it is, the same search with nothing
-    /// supposed finds the same. Edges and turns need not be safe by themselves.
-    fn as_measured(&mut self, way: &Way<'_>, supposed: Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
-        let mut fitting = Fitting { supposed, ..Fitting::new(&self.base, way) };
-        for round in 0..ROUNDS {
-            fitting.round = round;
-            let places = match self.look(&mut fitting, stop)? {
-                Ok(looked) if looked.safe() => {
-                    let certified = self.fresh(&fitting, stop)?;
-                    return Ok(certified.map(|certified| fitting.fitted(certified, true)));
-                }
-                Ok(looked) => failing(&looked).into_iter().map(|place| place.at).collect(),
-                Err(Refutation { at, .. }) => vec![at],
-            };
-            let mut more = false;
-            for at in places.into_iter().filter(|at| matches!(at, PartKind::Turn { .. })) {
-                let Fitting { drive, choices, .. } = &mut fitting;
-                let another = self.whole.as_mut().is_some_and(|(whole, _)| whole.another(drive, at, choices));
-                more |= another || self.merge(&mut fitting, at, stop)?;
-            }
-            if !more {
-                break;
-            }
-        }
-        Ok(None)
+    fn sections(&self, way: &Way<'_>) -> Vec<Section> {
+        let long_m = self.driver.model.vehicle.length_m + APART_M;
+        sections(&self.roads.network, &self.roads.movements, way, long_m)
     }
 
-    /// Supposes for each edge and turn of a section what it needs by itself.
-    fn suppose(&mut self, section: &Section, access: &Access, stop: &Stop) -> Result<Result<Fitting, Unfit>, Stopped> {
-        let key = self.section_key(section, access);
-        if let Some(known) = self.supposed.get(&key) {
-            return Ok(known.clone());
-        }
-        let mut fitting = Fitting::new(&self.base, &section.way());
-        let mut unfit = Vec::new();
-        // Turns that are not safe by themselves may pass as parts of the whole.
-        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
-        if !(roomy && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe())) {
-            unfit.extend(self.suppose_widths(&mut fitting, access, stop)?);
-            unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);
-        }
-        let unfit: Vec<PartKind> = unfit.into_iter().flat_map(|at| joint::parted(&section.drive, at)).collect();
-        let supposed = if unfit.is_empty() { Ok(fitting) } else { Err(Unfit(unfit)) };
-        self.supposed.insert(key, supposed.clone());
-        Ok(supposed)
+    /// A way with the passages, suppositions and paths of its sections.
+    pub(super) fn joined(&self, way: &Way<'_>, sections: &[Section], own: &[Fitting]) -> Fitting {
+        let mut whole = Fitting::new(&self.base, way);
+        whole.drive.over.clear();
+        sections.iter().zip(own).for_each(|(section, own)| whole.take_over(own, section.first));
+        whole
     }
 
-    /// Supposes the least that makes a section safe.
-    fn settle(&mut self, section: &Section, access: &Access, stop: &Stop) -> Result<Result<Fitting, Unfit>, Stopped> {
-        let key = self.section_key(section, access);
-        if let Some(known) = self.settled.get(&key) {
-            return Ok(known.clone());
-        }
-        let mut settled = self.suppose(section, access, stop)?;
-        if let Ok(fitting) = &mut settled {
-            match self.suppose_until_safe(fitting, stop)? {
-                Some(at) => settled = Err(Unfit(joint::parted(&section.drive, at))),
-                None => self.lessen(fitting, access, stop)?,
+    /// What the edges and turns of each section need by themselves.
+    fn supposed_for(
+        &mut self,
+        sections: &[Section],
+        access: &Access,
+        stop: &Stop,
+    ) -> Result<Result<Vec<Fitting>, Unfit>, Stopped> {
+        let work = |fitter: &mut Self, at: usize| fitter.suppose(&sections[at], access, stop);
+        self.known_or(|fitter| &mut fitter.supposed, sections, access, work)
+    }
+
+    /// For each section enough to be safe.
+    fn safe_for(
+        &mut self,
+        sections: &[Section],
+        own: &[Fitting],
+        access: &Access,
+        stop: &Stop,
+    ) -> Result<Result<Vec<Fitting>, Unfit>, Stopped> {
+        let work = |fitter: &mut Self, at: usize| {
+            let mut fitting = own[at].clone();
+            let unfit = fitter.suppose_until_safe(&mut fitting, stop)?;
+            Ok(unfit.map_or(Ok(fitting), |at_fault| Err(Unfit(joint::parted(&sections[at].drive, at_fault)))))
+        };
+        self.known_or(|fitter| &mut fitter.safe, sections, access, work)
+    }
+
+    /// The least that makes each section safe.
+    fn least_for(
+        &mut self,
+        sections: &[Section],
+        safe: &[Fitting],
+        access: &Access,
+        stop: &Stop,
+    ) -> Result<Result<Vec<Fitting>, Unfit>, Stopped> {
+        let work = |fitter: &mut Self, at: usize| {
+            let mut fitting = safe[at].clone();
+            fitter.lessen(&mut fitting, access, stop)?;
+            Ok(Ok(fitting))
+        };
+        self.known_or(|fitter| &mut fitter.settled, sections, access, work)
+    }
+
+    /// What is known of sections, or else what `work` says of them. All places at fault, if a section does not fit.
+    fn known_or(
+        &mut self,
+        known: impl Fn(&mut Self) -> &mut FxHashMap<SectionKey, Result<Fitting, Unfit>>,
+        sections: &[Section],
+        access: &Access,
+        work: impl Fn(&mut Self, usize) -> Result<Result<Fitting, Unfit>, Stopped> + Sync,
+    ) -> Result<Result<Vec<Fitting>, Unfit>, Stopped> {
+        let keys: Vec<SectionKey> = sections.iter().map(|section| self.section_key(section, access)).collect();
+        let new: Vec<usize> = (0..keys.len()).filter(|&at| !known(self).contains_key(&keys[at])).collect();
+        let made = self.together(new.len(), |fitter, i| work(fitter, new[i]))?;
+        known(self).extend(new.iter().map(|&at| keys[at].clone()).zip(made));
+        let (mut fitted, mut unfit) = (Vec::new(), Vec::new());
+        for key in &keys {
+            match known(self).get(key).cloned() {
+                Some(Ok(fitting)) => fitted.push(fitting),
+                Some(Err(Unfit(places))) => unfit.extend(places),
+                None => {}
             }
         }
-        self.settled.insert(key, settled.clone());
-        Ok(settled)
+        Ok(if fitted.len() == keys.len() { Ok(fitted) } else { Err(Unfit(unfit)) })
     }
 
     /// Everything that decides what a section needs.
@@ -253,88 +266,63 @@ impl Fitter {
         (drive.edges.clone(), drive.over.clone(), [start.to_bits(), end.to_bits()], priced)
     }
 
-    /// Supposes more where a way fails, until it is safe. Returns the place where nothing more does.
-    fn suppose_until_safe(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Option<PartKind>, Stopped> {
-        let mut last = None;
+    /// The way under what is supposed, if it is safe. What is supposed counts as if it were measured: when it is, the same search with nothing
+    /// supposed finds the same. Edges and turns need not be safe by themselves.
+    fn as_measured(&mut self, way: &Way<'_>, supposed: Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
+        let sections = self.sections(way);
+        // A certificate over the whole takes longest. Where a section fails it is not tried.
+        let tried = self.each_as_measured(&sections, &supposed, stop)?;
+        let Some(own) = tried.into_iter().collect::<Option<Vec<Fitting>>>() else { return Ok(None) };
+        let mut fitting = self.joined(way, &sections, &own);
+        fitting.supposed.add(&supposed);
+        if let Some(certified) = self.fresh(&fitting, stop)? {
+            return Ok(Some(fitting.fitted(certified, true)));
+        }
+        let certified = if self.safe_as_measured(&mut fitting, stop)? { self.fresh(&fitting, stop)? } else { None };
+        Ok(certified.map(|certified| fitting.fitted(certified, true)))
+    }
+
+    /// By section: what is safe under what is supposed, as if it were measured. `None` where nothing is.
+    pub(super) fn each_as_measured(
+        &mut self,
+        sections: &[Section],
+        supposed: &Suppositions,
+        stop: &Stop,
+    ) -> Result<Vec<Option<Fitting>>, Stopped> {
+        self.together(sections.len(), |fitter, at| {
+            let mut fitting = Fitting { supposed: supposed.clone(), ..Fitting::new(&fitter.base, &sections[at].way()) };
+            Ok(fitter.safe_as_measured(&mut fitting, stop)?.then_some(fitting))
+        })
+    }
+
+    /// Looks for paths along which a stretch is safe under what is supposed: other paths of turns, or one path over two turns.
+    fn safe_as_measured(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<bool, Stopped> {
         for round in 0..ROUNDS {
             fitting.round = round;
-            let goes_on = match self.look(fitting, stop)? {
-                Err(Refutation { at, .. }) => {
-                    last = Some(at);
-                    self.merge(fitting, at, stop)?
-                }
-                Ok(looked) if looked.safe() => return Ok(None),
-                Ok(looked) => {
-                    let places = failing(&looked);
-                    last = places.first().map(|place| place.at);
-                    let mut more = false;
-                    for place in places {
-                        more |= self.help(fitting, &place, stop)?;
-                    }
-                    more
-                }
+            let places = match self.look(fitting, stop)? {
+                Ok(looked) if looked.safe() => return Ok(true),
+                Ok(looked) => failing(&looked).into_iter().map(|place| place.at).collect(),
+                Err(Refutation { at, .. }) => vec![at],
             };
-            if !goes_on {
+            let mut more = false;
+            for at in places.into_iter().filter(|at| matches!(at, PartKind::Turn { .. })) {
+                let Fitting { drive, choices, .. } = &mut *fitting;
+                let another = self.whole.as_mut().is_some_and(|(whole, _)| whole.another(drive, at, choices));
+                more |= another || self.merge(fitting, at, stop)?;
+            }
+            if !more {
                 break;
             }
         }
-        Ok(last.or_else(|| fitting.drive.edges.first().map(|&edge| PartKind::Edge(edge))))
-    }
-
-    /// Supposes more at a place where a way fails, or drives another path there. Returns whether there is more to try.
-    fn help(&mut self, fitting: &mut Fitting, place: &Failing, stop: &Stop) -> Result<bool, Stopped> {
-        let PartKind::Turn { from, to } = place.at else { return Ok(self.more_room(fitting, place)) };
-        let another = |fitter: &mut Self, fitting: &mut Fitting| {
-            let Fitting { drive, choices, .. } = fitting;
-            fitter.whole.as_mut().is_some_and(|(whole, _)| whole.another(drive, place.at, choices))
-        };
-        // More room does not unfold a vehicle. Another path may, or one path over two turns.
-        if place.folds {
-            return Ok(another(self, fitting)
-                || self.merge(fitting, place.at, stop)?
-                || self.more_room(fitting, place));
-        }
-        if self.more_room(fitting, place) {
-            // The turn's paths are others now.
-            fitting.choices.remove(&(from, to));
-            return Ok(true);
-        }
-        Ok(another(self, fitting) || self.merge(fitting, place.at, stop)?)
-    }
-
-    /// Joins and certifies the way under what is supposed.
-    pub(super) fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, Refutation>, Stopped> {
-        fitting.supposed.apply(network_of(&mut self.roads));
-        let going = match self.whole.take() {
-            None => self.new_whole(),
-            Some((mut whole, before)) => {
-                let edges = fitting.supposed.differing_edges(&before);
-                let nodes = fitting.supposed.differing_nodes(&before, &self.roads.network);
-                whole.go_on_with(&self.roads, &edges, &nodes);
-                whole
-            }
-        };
-        let (whole, _) = self.whole.insert((going, fitting.supposed.clone()));
-        let Fitting { drive, start, end, choices, .. } = fitting;
-        whole.look(&Way { drive, start: *start, end: *end }, choices, stop)
+        Ok(false)
     }
 
     /// The way under what is supposed, if it is safe when everything is made anew.
-    fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<Certified>, Stopped> {
+    pub(super) fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<Certified>, Stopped> {
         fitting.supposed.apply(network_of(&mut self.roads));
         let mut fresh = self.new_whole();
         let way = Way { drive: &fitting.drive, start: fitting.start, end: fitting.end };
-        match fresh.look(&way, &mut fitting.choices.clone(), stop)? {
-            Ok(looked) => fresh.prove(looked.path, stop),
-            Err(_) => Ok(None),
-        }
-    }
-
-    /// Certifies ways on the roads as they are now.
-    fn new_whole(&self) -> Whole {
-        let driver = Arc::clone(&self.driver);
-        let turns = Box::new(MadeTurns { driver, more: MORE_PATHS, unsafe_too: true });
-        Whole::new(&self.roads, Arc::clone(&self.driver), turns)
+        fresh.prove(&way, &fitting.choices, stop)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Fewer and smaller conditions: what a section can do without is taken back.
 
-use super::fit::{Fitter, Fitting};
+use std::sync::Arc;
+
+use super::fit::{Fitter, Fitting, network_of};
 use super::suppositions::Suppositions;
 use super::{Condition, ConditionAt};
 use crate::graph::Access;
@@ -31,20 +33,27 @@ impl Fitter {
             ConditionAt::Corner { .. } => 2,
         });
         let mut left = TRIES;
+        // First each condition is left out if it can be. Then the values between are halved.
+        let mut needed = Vec::new();
         for condition in conditions {
-            // First the condition is left out, then the values between are halved.
-            let less: Vec<Suppositions> =
-                fitting.supposed.less(&condition).skip(usize::from(own(&condition))).collect();
+            let without = fitting.supposed.with_only(&condition, 0.0);
+            let may_go = !own(&condition) && left > 0;
+            left -= usize::from(may_go);
+            if !(may_go && self.still_safe(fitting, without, stop)?) {
+                needed.push(condition);
+            }
+        }
+        for condition in needed {
+            let less: Vec<Suppositions> = fitting.supposed.less(&condition).collect();
             let (mut low, mut high) = (0, less.len());
-            let mut at = 0;
             while low < high && left > 0 {
                 left -= 1;
+                let at = usize::midpoint(low, high);
                 if self.still_safe(fitting, less[at].clone(), stop)? {
                     high = at;
                 } else {
                     low = at + 1;
                 }
-                at = usize::midpoint(low, high);
             }
         }
         self.level(fitting, stop)
@@ -60,7 +69,9 @@ impl Fitter {
         Ok(())
     }
 
-    fn conditions(&self, fitting: &Fitting) -> Vec<Condition> {
+    fn conditions(&mut self, fitting: &Fitting) -> Vec<Condition> {
+        // The network says what radius a corner has, so nothing may be supposed there.
+        Suppositions::new(Arc::clone(&self.base)).apply(network_of(&mut self.roads));
         let kerbs = &self.driver.permits.settings.kerbs;
         fitting.supposed.conditions(&self.roads.network, kerbs, &fitting.drive.edges)
     }

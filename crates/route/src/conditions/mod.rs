@@ -8,12 +8,15 @@ mod fit;
 mod joint;
 mod less;
 mod level;
+mod mend;
 mod parts;
 mod report;
 mod search;
 mod sections;
 mod sheet;
+mod stretch;
 mod suppositions;
+mod together;
 mod turn_need;
 
 pub(super) use fit::Fitter;

@@ -141,7 +141,7 @@ impl Suppositions {
         own
     }
 
-    /// The same with less supposed for a condition, from nothing at all to little less than it asks.
+    /// The same with less supposed for a condition, from little to little less than it asks.
     pub(super) fn less(&self, condition: &Condition) -> impl Iterator<Item = Self> {
         let (most_m, least_m) = (condition.needed_m, condition.assumed_m.unwrap_or(0.0));
         let fewer: Vec<f64> = match condition.at {
@@ -150,7 +150,7 @@ impl Suppositions {
             ConditionAt::Road(_) => WIDTH_SHARES.map(|share| least_m + share * (most_m - least_m)).to_vec(),
         };
         let fewer = fewer.into_iter().filter(move |&m| least_m < m && m < most_m);
-        std::iter::once(0.0).chain(fewer).map(|m| self.with_only(condition, m))
+        fewer.map(|m| self.with_only(condition, m))
     }
 
     /// The same with another value for a condition; 0: without it.
@@ -204,6 +204,13 @@ impl Suppositions {
         for (&node, &(at, m)) in &other.paved_m {
             self.pave(node, at, m);
         }
+    }
+
+    /// The same with what others suppose, too.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        both.add(other);
+        both
     }
 
     /// Gives both ways round a corner the greater of their radii: there is one kerb.
