@@ -141,7 +141,7 @@ impl Fitter {
         stop: &Stop,
     ) -> Result<Result<Fitted, Unfit>, Stopped> {
         if !self.base.is_empty()
-            && let Some(fitted) = self.as_measured(way, Suppositions::new(Arc::clone(&self.base)), stop)?
+            && let Some(fitted) = self.as_measured(way, &Suppositions::new(Arc::clone(&self.base)), stop)?
         {
             return Ok(Ok(fitted));
         }
@@ -268,13 +268,13 @@ impl Fitter {
 
     /// The way under what is supposed, if it is safe. What is supposed counts as if it were measured: when it is, the same search with nothing
     /// supposed finds the same. Edges and turns need not be safe by themselves.
-    fn as_measured(&mut self, way: &Way<'_>, supposed: Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
+    fn as_measured(&mut self, way: &Way<'_>, supposed: &Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
         let sections = self.sections(way);
         // A certificate over the whole takes longest. Where a section fails it is not tried.
-        let tried = self.each_as_measured(&sections, &supposed, stop)?;
+        let tried = self.each_as_measured(&sections, supposed, stop)?;
         let Some(own) = tried.into_iter().collect::<Option<Vec<Fitting>>>() else { return Ok(None) };
         let mut fitting = self.joined(way, &sections, &own);
-        fitting.supposed.add(&supposed);
+        fitting.supposed.add(supposed);
         if let Some(certified) = self.fresh(&fitting, stop)? {
             return Ok(Some(fitting.fitted(certified, true)));
         }

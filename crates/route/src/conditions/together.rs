@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::fit::Fitter;
 use crate::stop::Stopped;
 
-/// The greatest number of fitters, because each has a copy of the network.
+/// The greatest number of fitters, and of edges in all their copies of the network together. In Heidelberg an edge takes 1.4 kilobytes.
 const MOST_HELPERS: usize = 8;
+const MOST_EDGES: usize = 1_000_000;
 
 impl Fitter {
     /// Does `count` pieces of work, and returns their results in order.
@@ -17,7 +18,8 @@ impl Fitter {
         count: usize,
         work: impl Fn(&mut Self, usize) -> Result<T, Stopped> + Sync,
     ) -> Result<Vec<T>, Stopped> {
-        let threads = rayon::current_num_threads().min(MOST_HELPERS).min(count);
+        let copies = MOST_EDGES / self.roads.network.edges.len().max(1);
+        let threads = rayon::current_num_threads().min(MOST_HELPERS).min(copies).min(count);
         if threads < 2 {
             return (0..count).map(|at| work(self, at)).collect();
         }
