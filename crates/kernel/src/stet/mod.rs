@@ -97,7 +97,7 @@ pub fn certify(
 }
 
 /// The result of one vehicle for each span. Where all spans are safe, [`certify_planned`] says so, too. Where a span fails and several stretches
-/// were planned by themselves, one plan for all of them is not tried: on a long route it takes most of the time, and rarely helps.
+/// were planned by themselves, one plan for all of them is not tried: on a long route it takes most of the time.
 ///
 /// # Errors
 /// `stop` was told: each sweep asks it every few metres.
