@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { drawnRegion, idle, program, text } from "./support.mjs";
+import { program } from "./databases.mjs";
+import { drawnRegion, idle, text } from "./support.mjs";
 
 const { all, ask, inPage } = drawnRegion();
 

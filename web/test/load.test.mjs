@@ -5,7 +5,8 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { demoDatabase, load, program, serve } from "./support.mjs";
+import { demoDatabase, program } from "./databases.mjs";
+import { load, serve } from "./support.mjs";
 
 const ROUTES = 40;
 const { patient } = await load("api/patient.ts");

@@ -1,23 +1,19 @@
-// What the browser tests stand on: a database of the drawn region, a running `netcert serve`, a browser, and a page that
-// remembers every error and every request that leaves the machine.
+// What the browser tests stand on: a running `netcert serve`, a browser, and a page that remembers every error and every request that
+// leaves the machine.
 //
-// Environment: NETCERT the program, CHROMIUM the browser, NETCERT_TEST_DB a database instead of the drawn region's.
+// Environment: CHROMIUM the browser.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
-import { copyFileSync, existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { after, before, test } from "node:test";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { join } from "node:path";
 import { build } from "esbuild";
 import { chromium } from "playwright-core";
 import { proxy } from "../tools/proxy.mjs";
+import { demoDatabase, first, program, root, twoDatabases } from "./databases.mjs";
 
-export const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
-
-const first = (paths) => paths.find((path) => path && existsSync(path));
-export const program = first([process.env.NETCERT, join(root, "target/release/netcert"), join(root, "target/debug/netcert")]);
 export const browserPath = first([process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]);
 
 /** Why browser tests cannot run here, or false. */
@@ -32,45 +28,6 @@ export async function load(path) {
   const entry = join(root, "web/src", path);
   const made = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false, platform: "neutral", mainFields: ["module"] });
   return import(`data:text/javascript;base64,${Buffer.from(made.outputFiles[0].contents).toString("base64")}`);
-}
-
-/** The drawn region, certified for two vehicles under two policies. */
-export function demoDatabase(folder) {
-  if (process.env.NETCERT_TEST_DB) return process.env.NETCERT_TEST_DB;
-  const db = join(folder, "demo.gpkg");
-  const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: ["ignore", "ignore", "inherit"] });
-  const vehicles = ["--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53"];
-  run("ingest", join(root, "data/demo.osm.pbf"), "--db", db, ...vehicles);
-  run("certify", "--db", db, ...vehicles, "--corridor", "carriageway", "--needs", "all");
-  return db;
-}
-
-/**
- * Two databases of the drawn region, `old.gpkg` and `new.gpkg`: in the newer one a road is measured narrower and another one wider, a
- * third one has a limit of weight, a fourth one is gone, and there is a new one. The newer one has a lake and a town, too.
- */
-export function twoDatabases(folder) {
-  const [before, db] = ["old.gpkg", "new.gpkg"].map((name) => join(folder, name));
-  const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: "ignore" });
-  const extract = join(root, "data/demo.osm.pbf");
-  run("ingest", extract, "--db", before, "--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53");
-  copyFileSync(before, db);
-  const measured = ["quantity,value,unit,way_id,source", "carriageway_width,5.4,m,15,tape", "carriageway_width,9,m,57,tape", "max_weight,12,t,36,sign"];
-  writeFileSync(join(folder, "measured.csv"), measured.join("\n"));
-  run("evidence", "add", join(folder, "measured.csv"), "--db", db);
-  const gone = '<delete><way id="49" version="99"/></delete>';
-  const node = '<node id="900001" version="1" lat="-30.2" lon="126.06"/>';
-  const way = '<way id="900002" version="1"><nd ref="158"/><nd ref="900001"/><tag k="highway" v="primary"/><tag k="width" v="12"/><tag k="name" v="New Ring Road"/></way>';
-  const shore = Array.from({ length: 24 }, (_, k) => {
-    const [angle, reach] = [(2 * Math.PI * k) / 24, 1 + 0.15 * Math.sin(k * 1.7)];
-    return [126.02 + 0.02 * reach * Math.cos(angle), -30.226 + 0.007 * reach * Math.sin(angle)];
-  }).map(([lon, lat], k) => `<node id="${900010 + k}" version="1" lat="${lat.toFixed(7)}" lon="${lon.toFixed(7)}"/>`);
-  const round = [...shore.keys(), 0].map((k) => `<nd ref="${900010 + k}"/>`).join("");
-  const lake = `${shore.join("")}<way id="900050" version="1">${round}<tag k="natural" v="water"/></way>`;
-  const town = '<node id="900060" version="1" lat="-30.215" lon="126"><tag k="place" v="town"/><tag k="name" v="Laketon"/></node>';
-  writeFileSync(join(folder, "later.osc"), `<osmChange version="0.6">${gone}<create>${node}${way}${lake}${town}</create></osmChange>`);
-  run("update", "--db", db, join(folder, "later.osc"), "--extract", extract);
-  return { before, db };
 }
 
 /**

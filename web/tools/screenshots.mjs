@@ -8,7 +8,8 @@
 import { existsSync } from "node:fs";
 import { mkdir, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
-import { edgePixel, idle, launch, open, root, serve, twoDatabases } from "../test/support.mjs";
+import { root, twoDatabases } from "../test/databases.mjs";
+import { edgePixel, idle, launch, open, serve } from "../test/support.mjs";
 
 const size = { width: 1280, height: 800 };
 const wait = (page, ms) => page.waitForTimeout(ms);
