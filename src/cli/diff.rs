@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use netcert::diff::{Change, Row, Sums, edges, notes, turns};
 use netcert::osm::facts::Policy;
+use netcert::rows::SetKey;
 use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::words::Named;
 use serde_json::{Value, json};
@@ -62,20 +63,21 @@ impl Diff {
         let sets = self.common(&old.certified()?, &new.certified()?, session)?;
         let mut sink = Sink::begin(self.format, self)?;
         for (vehicle, policy, turned) in &sets {
+            let set = SetKey { vehicle, policy: *policy };
             let options = QueryOptions::new(vehicle, *policy);
             let mut sums = Sums::default();
             edges(told(old.query(&options)?), told(new.query(&options)?), |changed| {
                 sums.add_edge(&changed);
-                sink.row(&Row::of_edge((vehicle, *policy), &changed))
+                sink.row(&Row::of_edge(set, &changed))
             })?;
             if *turned {
                 let (before, after) = (old.turn_rows(vehicle, *policy)?, new.turn_rows(vehicle, *policy)?);
                 turns(told(before), told(after), |changed| {
                     sums.add_turn(&changed);
-                    sink.row(&Row::of_turn((vehicle, *policy), &changed))
+                    sink.row(&Row::of_turn(set, &changed))
                 })?;
             }
-            sink.sums((vehicle, *policy), &sums)?;
+            sink.sums(set, &sums)?;
             session.progress.say(&format!("{vehicle}, corridor {}: {}", policy.name(), in_words(&sums, *turned)));
         }
         sink.end()?;
@@ -194,7 +196,7 @@ impl Sink {
     }
 
     /// The table of one vehicle.
-    fn sums(&mut self, (vehicle, policy): (&str, Policy), sums: &Sums) -> anyhow::Result<()> {
+    fn sums(&mut self, set: SetKey<'_>, sums: &Sums) -> anyhow::Result<()> {
         if self.format != Format::Table {
             return Ok(());
         }
@@ -202,7 +204,7 @@ impl Sink {
         if roads.is_empty() {
             return Ok(());
         }
-        writeln!(self.out, "{vehicle}, corridor {}", policy.name())?;
+        writeln!(self.out, "{}, corridor {}", set.vehicle, set.policy.name())?;
         let mut table = Table::new(&["change", ">km", ">edges", "highway", "road"]);
         for (change, road, changes) in roads {
             let change = match change {

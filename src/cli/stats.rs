@@ -7,7 +7,7 @@ use std::io::Write;
 use clap::{Args, ValueEnum};
 use netcert::account::AccountRow;
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::rows::{self, NeedCount, StatsRow};
+use netcert::rows::{self, NeedCount, SetKey, StatsRow, TurnCount};
 use netcert::settings::Needs;
 use netcert::store::{CertifiedSet, Database, Run};
 use netcert::words::{Named, VerdictKind, verdict_words};
@@ -80,7 +80,13 @@ impl Stats {
             .relative
             .relative_to
             .as_deref()
-            .map(|id| Compared::read(&mut database, sets.iter().map(|set| (set.vehicle, set.policy)), id))
+            .map(|id| {
+                Compared::read(
+                    &mut database,
+                    sets.iter().map(|set| SetKey { vehicle: set.vehicle, policy: set.policy }),
+                    id,
+                )
+            })
             .transpose()?;
         let mut out = results();
         match self.format {
@@ -110,7 +116,8 @@ fn sets<'s>(stats: &'s rows::Stats, certified: &[CertifiedSet]) -> Vec<Set<'s>> 
         match sets.last_mut() {
             Some(set) if (set.vehicle, set.policy) == (&row.vehicle_id, row.policy) => set.rows.push(row),
             _ => {
-                let certified_needs = needs_are_certified((&row.vehicle_id, row.policy), certified);
+                let certified_needs =
+                    needs_are_certified(SetKey { vehicle: &row.vehicle_id, policy: row.policy }, certified);
                 sets.push(Set { vehicle: &row.vehicle_id, policy: row.policy, rows: vec![row], certified_needs });
             }
         }
@@ -157,14 +164,15 @@ fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
 }
 
 /// Prints the number of turns by verdict, one line for each vehicle and policy.
-fn turns(out: &mut dyn Write, stats: &rows::Stats) -> anyhow::Result<()> {
+fn turns<'s>(out: &mut dyn Write, stats: &'s rows::Stats) -> anyhow::Result<()> {
     let mut table = Table::new(&["vehicle", "policy", ">turns", ">safe", ">unsafe", ">forbidden", ">unknown"]);
-    let mut keys: Vec<(&str, Policy)> = stats.turns.iter().map(|t| (t.vehicle_id.as_str(), t.policy)).collect();
+    let key = |t: &'s TurnCount| SetKey { vehicle: &t.vehicle_id, policy: t.policy };
+    let mut keys: Vec<SetKey<'_>> = stats.turns.iter().map(key).collect();
     keys.dedup();
     if keys.is_empty() {
         return Ok(());
     }
-    for (vehicle, policy) in keys {
+    for SetKey { vehicle, policy } in keys {
         let count = |kind: Option<&VerdictKind>| -> u64 {
             let of = stats.turns.iter().filter(|t| t.vehicle_id == vehicle && t.policy == policy);
             of.filter(|t| kind.is_none_or(|kind| verdict_words(t.verdict).0 == kind.name())).map(|t| t.turns).sum()
@@ -209,8 +217,8 @@ fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Resul
 }
 
 /// Whether each need of a set was certified, and not estimated.
-fn needs_are_certified(set: (&str, Policy), certified: &[CertifiedSet]) -> bool {
-    let of_set = |known: &&CertifiedSet| (known.vehicle_id.as_str(), known.policy) == set;
+fn needs_are_certified(set: SetKey<'_>, certified: &[CertifiedSet]) -> bool {
+    let of_set = |known: &&CertifiedSet| known.vehicle_id == set.vehicle && known.policy == set.policy;
     let settings = certified.iter().find(of_set).and_then(|known| known.settings().ok());
     settings.is_some_and(|settings| settings.needs.include(Needs::Edges))
 }

@@ -11,8 +11,7 @@ use super::problem::Problem;
 use super::region::{Certified, Region};
 use crate::diff::{self, Change, Changed, Row, Sums};
 use crate::network::length_m;
-use crate::osm::facts::Policy;
-use crate::rows::{Bounds, DrivingSides, EdgeRow, TurnRow};
+use crate::rows::{Bounds, DrivingSides, EdgeRow, SetKey, TurnRow};
 use crate::stop::Stop;
 use crate::store::{QueryOptions, StoreError};
 use crate::words::Named;
@@ -57,7 +56,7 @@ impl Changes {
         let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
         let turned = before.settings.turns && after.settings.turns;
         let mut gathered = Gathered {
-            set: (vehicle, policy),
+            set: SetKey { vehicle, policy },
             sides: [old.sides()?, new.sides()?],
             sums: Sums::default(),
             longest: Longest::default(),
@@ -82,7 +81,7 @@ impl Changes {
 
 /// Changes while they come.
 struct Gathered<'g> {
-    set: (&'g str, Policy),
+    set: SetKey<'g>,
     /// The driving sides of the older and of the newer database.
     sides: [Arc<DrivingSides>; 2],
     sums: Sums,

@@ -21,7 +21,7 @@ use super::roads::RoadIndex;
 use super::search::Finder;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
-use crate::rows::{Bounds, DrivingSides, MapNumbers};
+use crate::rows::{Bounds, DrivingSides, MapNumbers, SetKey};
 use crate::settings::Settings;
 use crate::stop::Stop;
 use crate::store::{CertifiedSet, Database, Run, StoreError};
@@ -252,16 +252,12 @@ impl Region {
 
     /// The numbers of every edge of `roads` in a set; the first call reads them. `None` if there are too many edges to hold, or if a damaged
     /// file has numbers of some edges only.
-    pub(super) fn numbers(
-        &self,
-        roads: &RoadIndex,
-        set: (&str, Policy),
-    ) -> Result<Option<Arc<Vec<MapNumbers>>>, Problem> {
+    pub(super) fn numbers(&self, roads: &RoadIndex, set: SetKey<'_>) -> Result<Option<Arc<Vec<MapNumbers>>>, Problem> {
         let edges = roads.network().edges.len();
         if edges > self.held_edges {
             return Ok(None);
         }
-        let key = format!("{} {}", set.0, set.1.name());
+        let key = format!("{} {}", set.vehicle, set.policy.name());
         let numbers = self.numbers.get(&key, || self.read(|database| database.map_numbers(set)))?;
         Ok(Some(numbers).filter(|numbers| numbers.len() == edges))
     }
@@ -270,7 +266,7 @@ impl Region {
     pub(super) fn first_map(&self) -> Result<(), Problem> {
         let roads = self.roads()?;
         let Some(set) = self.sets.first() else { return Ok(()) };
-        self.numbers(&roads, (&set.vehicle_id, set.policy)).map(|_| ())
+        self.numbers(&roads, SetKey { vehicle: &set.vehicle_id, policy: set.policy }).map(|_| ())
     }
 
     /// Loads the roads and their names, and the numbers of the first sets.
@@ -278,7 +274,7 @@ impl Region {
         let roads = self.roads()?;
         for set in self.sets.iter().take(MOST_NUMBERS) {
             stop.check()?;
-            self.numbers(&roads, (&set.vehicle_id, set.policy))?;
+            self.numbers(&roads, SetKey { vehicle: &set.vehicle_id, policy: set.policy })?;
         }
         self.finder().map(|_| ())
     }

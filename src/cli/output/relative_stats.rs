@@ -4,8 +4,7 @@
 
 use std::io::Write;
 
-use netcert::osm::facts::Policy;
-use netcert::rows::RelativeCount;
+use netcert::rows::{RelativeCount, SetKey};
 use netcert::store::{CertifiedSet, Database};
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
@@ -23,11 +22,11 @@ impl<'a> Compared<'a> {
     /// Reads and compares sets, each named by vehicle and policy.
     pub(crate) fn read<'s>(
         database: &mut Database,
-        sets: impl Iterator<Item = (&'s str, Policy)>,
+        sets: impl Iterator<Item = SetKey<'s>>,
         reference: &'a str,
     ) -> anyhow::Result<Self> {
         let mut all = Vec::new();
-        for (vehicle, policy) in sets {
+        for SetKey { vehicle, policy } in sets {
             let Some(set) = database.certified_set(vehicle, policy)? else { continue };
             let other = database.reference(&set, reference)?;
             let counts = database.relative_counts(&set, &other)?;

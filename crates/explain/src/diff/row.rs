@@ -4,8 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Change, Changed, Standing};
 use crate::osm::LonLat;
-use crate::osm::facts::Policy;
-use crate::rows::{CertificateRow, EdgeRow, TurnRow};
+use crate::rows::{CertificateRow, EdgeRow, SetKey, TurnRow};
 use netcert_base::words::{Named, verdict_words};
 
 /// An edge or turn that changed, as the formats for programs have it.
@@ -42,12 +41,12 @@ impl Row {
         "after_need_width_m",
     ];
 
-    fn new((vehicle, policy): (&str, Policy), kind: &str, change: Change, id: i64, line: Vec<LonLat>) -> Self {
+    fn new(set: SetKey<'_>, kind: &str, change: Change, id: i64, line: Vec<LonLat>) -> Self {
         let mut members: Map<String, Value> =
             Self::MEMBERS.iter().map(|name| ((*name).to_owned(), Value::Null)).collect();
         let values = [
-            ("vehicle_id", json!(vehicle)),
-            ("corridor", json!(policy.name())),
+            ("vehicle_id", json!(set.vehicle)),
+            ("corridor", json!(set.policy.name())),
             ("kind", json!(kind)),
             ("change", json!(change.name())),
             ("id", json!(id)),
@@ -69,7 +68,7 @@ impl Row {
 
     /// The row of an edge. `None` if neither side has the edge.
     #[must_use]
-    pub fn of_edge(set: (&str, Policy), changed: &Changed<EdgeRow>) -> Option<Self> {
+    pub fn of_edge(set: SetKey<'_>, changed: &Changed<EdgeRow>) -> Option<Self> {
         let edge = changed.row()?;
         let mut row = Self::new(set, "edge", changed.change, edge.edge_id, edge.line.clone());
         row.set("way_id", json!(edge.way_id));
@@ -88,7 +87,7 @@ impl Row {
 
     /// The row of a turn. `None` if neither side has the turn.
     #[must_use]
-    pub fn of_turn(set: (&str, Policy), changed: &Changed<TurnRow>) -> Option<Self> {
+    pub fn of_turn(set: SetKey<'_>, changed: &Changed<TurnRow>) -> Option<Self> {
         let turn = changed.row()?;
         let mut row = Self::new(set, "turn", changed.change, turn.turn_id, turn.line.clone());
         let of = |name: &Option<String>| name.clone().unwrap_or_else(|| "unnamed".to_owned());

@@ -10,7 +10,7 @@ use super::super::roads::RoadIndex;
 use super::{SCOPE, answered, id};
 use crate::osm::facts::WidthSource;
 use crate::rows::{CertificateRow, EdgeRow};
-use crate::rows::{EdgeFacts, MapTurn};
+use crate::rows::{EdgeFacts, MapTurn, SetKey};
 use crate::store::{QueryOptions, TurnsOf};
 use crate::words::{Named, verdict_words};
 
@@ -30,7 +30,9 @@ pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Probl
         certificates.extend(row.map(|row| certificate(&set.vehicle_id, set.policy.name(), &row)));
     }
     let turns = match vehicle {
-        Some(vehicle) => region.read(|db| db.map_turns((&vehicle.id, policy), TurnsOf::Edge(facts.edge)))?,
+        Some(vehicle) => {
+            region.read(|db| db.map_turns(SetKey { vehicle: &vehicle.id, policy }, TurnsOf::Edge(facts.edge)))?
+        }
         None => Vec::new(),
     };
     let wanted = |c: &&Value| vehicle.is_some_and(|v| c["vehicle"] == json!(v.id)) && c["policy"] == policy.name();

@@ -15,7 +15,7 @@ use crate::explain::{self, Explanation, MapError};
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::picture;
-use crate::rows::Measurement;
+use crate::rows::{Measurement, SetKey};
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
@@ -137,7 +137,7 @@ fn of_turn(
     let node = roads.network().edges.get(facts.movement.from as usize);
     let node = node.and_then(|edge| roads.network().positions(edge).next_back());
     members["at"] = json!(node.map(LonLat::degrees));
-    let set = (model.vehicle.id.as_str(), settings.policy);
+    let set = SetKey { vehicle: &model.vehicle.id, policy: settings.policy };
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
     members["suppose"] = suppose::of_turn(region, &facts, set, turn.explanation.verdict)?;

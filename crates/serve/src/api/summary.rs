@@ -8,7 +8,7 @@ use super::super::region::Region;
 use super::super::roads::RoadIndex;
 use super::super::tiles::severity;
 use crate::osm::facts::Policy;
-use crate::rows::MapNumbers;
+use crate::rows::{MapNumbers, SetKey};
 use crate::words::{Named as _, VerdictKind, verdict_words};
 
 /// The numbers of all edges in a set of certificates.
@@ -21,7 +21,7 @@ impl Numbers {
         let policy: Policy = ask.parameter("policy").map_or(Ok(region.policy), ask::policy)?;
         let Some(vehicle) = ask.parameter("vehicle") else { return Ok(None) };
         let certified = region.certified(vehicle, policy)?;
-        Ok(region.numbers(roads, (&certified.vehicle.id, policy))?.map(Self))
+        Ok(region.numbers(roads, SetKey { vehicle: &certified.vehicle.id, policy })?.map(Self))
     }
 
     pub(super) fn of(&self, edge: u32) -> Option<&MapNumbers> {

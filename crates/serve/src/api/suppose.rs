@@ -15,7 +15,7 @@ use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::route::{CONDITIONAL, PartKind, title};
-use crate::rows::{EdgeRow, TurnRow};
+use crate::rows::{EdgeRow, SetKey, TurnRow};
 use crate::settings::{Needs, Settings};
 use crate::stet::{Model, SpanResult};
 use crate::stop::Stop;
@@ -231,13 +231,13 @@ fn certified_need_m(
 pub(super) fn of_turn(
     region: &Region,
     facts: &TurnFacts,
-    certified: (&str, Policy),
+    certified: SetKey<'_>,
     own: Verdict,
 ) -> Result<Value, Problem> {
     let Some(now_m) = facts.kerb_radius_m.filter(|_| matches!(own, Verdict::Safe | Verdict::Unsafe(_))) else {
         return Ok(Value::Null);
     };
-    let row = turn_row(region, certified.0, certified.1, facts.id)?;
+    let row = turn_row(region, certified.vehicle, certified.policy, facts.id)?;
     Ok(json!({
         "quantity": "kerb_radius",
         "unit": "m",

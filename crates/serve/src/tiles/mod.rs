@@ -37,8 +37,8 @@ use super::ask::{self, Ask};
 use super::problem::Problem;
 use super::region::{MOST_OVERVIEWS, Region};
 use crate::osm::LonLat;
-use crate::osm::facts::{Policy, WidthSource};
-use crate::rows::{MapEdge, MapNumbers, MapTurn};
+use crate::osm::facts::WidthSource;
+use crate::rows::{MapEdge, MapNumbers, MapTurn, SetKey};
 use crate::stop::Stop;
 use crate::store::TurnsOf;
 use crate::words::{Named, verdict_words};
@@ -62,10 +62,10 @@ pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     let policy = ask::policy(ask.name("policy")?)?;
     let vehicle = region.certified(ask.name("vehicle")?, policy)?.vehicle;
     let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
-    Ok(Stored::new(KIND, bytes(region, (&vehicle.id, policy), place)?))
+    Ok(Stored::new(KIND, bytes(region, SetKey { vehicle: &vehicle.id, policy }, place)?))
 }
 
-fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, Problem> {
+fn bytes(region: &Region, set: SetKey<'_>, place: Place) -> Result<Vec<u8>, Problem> {
     if place.z <= overview::LAST_ZOOM {
         let mut bytes = Vec::new();
         overview_of(region, set)?.layer(place).finish(&mut bytes);
@@ -114,14 +114,14 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
 pub(super) fn prepare(region: &Region, stop: &Stop) -> Result<(), Problem> {
     for set in region.sets.iter().take(MOST_OVERVIEWS) {
         stop.check()?;
-        overview_of(region, (&set.vehicle_id, set.policy))?;
+        overview_of(region, SetKey { vehicle: &set.vehicle_id, policy: set.policy })?;
     }
     Ok(())
 }
 
 /// The overview of a set, from which tiles of low zooms are made. The first call makes it.
-fn overview_of(region: &Region, set: (&str, Policy)) -> Result<Arc<Overview>, Problem> {
-    let key = format!("{} {}", set.0, set.1.name());
+fn overview_of(region: &Region, set: SetKey<'_>) -> Result<Arc<Overview>, Problem> {
+    let key = format!("{} {}", set.vehicle, set.policy.name());
     region.overviews.get(&key, || {
         let rows = region.read(|database| database.main_roads(set, classes(overview::LAST_ZOOM)))?;
         Ok(Overview::new(&rows))

@@ -9,9 +9,9 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::roads::RoadIndex;
 use crate::network::Network;
+use crate::osm::facts::RoadClass;
 use crate::osm::facts::highway;
-use crate::osm::facts::{Policy, RoadClass};
-use crate::rows::{Bounds, MapEdge, MapNumbers};
+use crate::rows::{Bounds, MapEdge, MapNumbers, SetKey};
 use crate::words::Named as _;
 
 /// Fewer edges are not worth a second thread.
@@ -22,7 +22,7 @@ pub(super) const LEAST_IN_PARALLEL: usize = 500;
 pub(super) fn edges<'r>(
     region: &Region,
     roads: Option<&'r RoadIndex>,
-    set: (&str, Policy),
+    set: SetKey<'_>,
     bounds: Bounds,
     classes: &[RoadClass],
 ) -> Result<Vec<MapEdge<'r>>, Problem> {

@@ -8,7 +8,7 @@ use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named;
-use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin};
+use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin, SetKey};
 
 use crate::database::Database;
 use crate::error::{StoreError, content};
@@ -82,11 +82,11 @@ impl Database {
     /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
     pub fn map_edges(
         &mut self,
-        (vehicle, policy): (&str, Policy),
+        set: SetKey<'_>,
         bounds: Bounds,
         classes: &[RoadClass],
     ) -> Result<Vec<MapEdge<'static>>, StoreError> {
-        let ([width, source], shared) = (width_columns(policy), shared_column(policy));
+        let ([width, source], shared) = (width_columns(set.policy), shared_column(set.policy));
         let mut sql = format!(
             "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, e.edge_id, e.way_id, \
              e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
@@ -102,7 +102,7 @@ impl Database {
         }
         let Bounds { west, south, east, north } = bounds;
         let mut rows: Vec<MapEdge<'static>> = self.session.run(async |c| {
-            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
             query.bind(west).bind(east).bind(south).bind(north).fetch_all(c).await?.iter().map(map_edge).collect()
         })?;
         // The index has boxes in single precision, and finds some edges that only come near.
@@ -116,8 +116,8 @@ impl Database {
     /// # Errors
     /// The file cannot be read, or an edge before the last certified one has no certificate. A vehicle that is not certified under this
     /// policy has no numbers.
-    pub fn map_numbers(&mut self, (vehicle, policy): (&str, Policy)) -> Result<Vec<MapNumbers>, StoreError> {
-        let ([width, source], shared) = (width_columns(policy), shared_column(policy));
+    pub fn map_numbers(&mut self, set: SetKey<'_>) -> Result<Vec<MapNumbers>, StoreError> {
+        let ([width, source], shared) = (width_columns(set.policy), shared_column(set.policy));
         let sql = format!(
             "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared} FROM edge AS e \
              CROSS JOIN certificate_compact AS c \
@@ -125,7 +125,7 @@ impl Database {
              AND c.corridor_no = ? AND c.fid = e.fid ORDER BY e.fid"
         );
         self.session.run(async |c| {
-            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
             let mut expected = 0_u32;
             let read = |row: Sql<SqliteRow>| {
                 let row = row?;
@@ -144,8 +144,8 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read. A vehicle whose turns are not certified under this policy has no rows.
-    pub fn map_turns(&mut self, (vehicle, policy): (&str, Policy), of: TurnsOf) -> Result<Vec<MapTurn>, StoreError> {
-        self.session.run(async |c| turns(c, vehicle, policy, of).await)
+    pub fn map_turns(&mut self, set: SetKey<'_>, of: TurnsOf) -> Result<Vec<MapTurn>, StoreError> {
+        self.session.run(async |c| turns(c, set, of).await)
     }
 
     /// A histogram of length over RSC in bins of `width_mm`, for every vehicle under a policy. Edges without an RSC are left
@@ -224,7 +224,7 @@ fn map_numbers(row: &SqliteRow) -> Sql<MapNumbers> {
     })
 }
 
-async fn turns(c: &mut SqliteConnection, vehicle: &str, policy: Policy, of: TurnsOf) -> Sql<Vec<MapTurn>> {
+async fn turns(c: &mut SqliteConnection, set: SetKey<'_>, of: TurnsOf) -> Sql<Vec<MapTurn>> {
     let which = match of {
         TurnsOf::Box(_) => {
             "t.from_fid IN (SELECT id FROM rtree_edge_geom WHERE maxx >= ? AND minx <= ? AND maxy >= ? AND miny <= ?)"
@@ -239,7 +239,7 @@ async fn turns(c: &mut SqliteConnection, vehicle: &str, policy: Policy, of: Turn
          AND c.corridor_no = ? AND c.fid = t.fid \
          CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid WHERE {which}"
     );
-    let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+    let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
     let query = match of {
         TurnsOf::Box(Bounds { west, south, east, north }) => query.bind(west).bind(east).bind(south).bind(north),
         TurnsOf::Edge(edge) => query.bind(i64::from(edge) + 1).bind(i64::from(edge) + 1),

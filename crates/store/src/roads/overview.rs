@@ -6,10 +6,10 @@
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
 
+use crate::osm::facts::RoadClass;
 use crate::osm::facts::class_and_link;
-use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named as _;
-use netcert_rows::MainRoad;
+use netcert_rows::{MainRoad, SetKey};
 
 use crate::database::Database;
 use crate::error::{StoreError, content};
@@ -23,12 +23,8 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
-    pub fn main_roads(
-        &mut self,
-        (vehicle, policy): (&str, Policy),
-        classes: &[RoadClass],
-    ) -> Result<Vec<MainRoad>, StoreError> {
-        let [_, source] = width_columns(policy);
+    pub fn main_roads(&mut self, set: SetKey<'_>, classes: &[RoadClass]) -> Result<Vec<MainRoad>, StoreError> {
+        let [_, source] = width_columns(set.policy);
         let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
         let sql = format!(
             "SELECT e.highway, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM edge AS e \
@@ -39,7 +35,7 @@ impl Database {
             words.join(",")
         );
         self.session.run(async |c| {
-            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
             query.fetch_all(c).await?.iter().map(main_road).collect()
         })
     }
