@@ -206,7 +206,7 @@ pub fn verify(
             sets.push(checked);
         };
         records.extend(missing_edges(&mut database, &network, &set)?);
-        add(Kind::Edge, request.edges(&mut database, &network, (&set, &settings), stop)?);
+        add(Kind::Edge, request.edges(&mut database, &network, &set, &settings, stop)?);
         let has_turns = database.has_turns(&set.vehicle_id, set.policy)?;
         if !has_turns && !settings.turns {
             continue;
@@ -216,7 +216,7 @@ pub fn verify(
         let (_, facts) = facts.insert(known.unwrap_or_else(made));
         if has_turns {
             records.extend(missing_turns(&mut database, facts, &set)?);
-            add(Kind::Turn, request.turns(&mut database, (&network, facts), (&set, &settings), stop)?);
+            add(Kind::Turn, request.turns(&mut database, &network, facts, &set, &settings, stop)?);
         } else if !facts.is_empty() {
             let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
             records.push(Complaint { grade: Grade::Malformed, detail });
@@ -239,7 +239,8 @@ impl Request {
         &self,
         database: &mut Database,
         network: &Network,
-        (set, settings): (&CertifiedSet, &Settings),
+        set: &CertifiedSet,
+        settings: &Settings,
         stop: &Stop,
     ) -> Result<SetReport, VerifyError> {
         let vehicle = defined(database, set)?;
@@ -264,8 +265,10 @@ impl Request {
     fn turns(
         &self,
         database: &mut Database,
-        (network, facts): (&Network, &[TurnFacts]),
-        (set, settings): (&CertifiedSet, &Settings),
+        network: &Network,
+        facts: &[TurnFacts],
+        set: &CertifiedSet,
+        settings: &Settings,
         stop: &Stop,
     ) -> Result<SetReport, VerifyError> {
         let vehicle = defined(database, set)?;

@@ -187,7 +187,7 @@ impl SetClaim<'_> {
         if row_claim::claims_nothing(&row.certificate) {
             return Outcome::Confirmed;
         }
-        let expected = expected((self.network, edge), self.vehicle, unknown, row);
+        let expected = expected(self.network, edge, self.vehicle, unknown, row);
         if unknown.is_some() && row_claim::has_numbers(&row.certificate) {
             return wrong("it has numbers, but nothing can be computed there".to_owned());
         }
@@ -254,7 +254,8 @@ fn unfit(row: &EdgeRow, why: &str) -> Outcome {
 
 /// The verdict that follows from legal limits, from whether there is a corridor, and from the row's own numbers.
 fn expected(
-    (network, edge): (&Network, &Edge),
+    network: &Network,
+    edge: &Edge,
     vehicle: &Vehicle,
     unknown: Option<UnknownReason>,
     row: &EdgeRow,

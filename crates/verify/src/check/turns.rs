@@ -172,7 +172,7 @@ impl TurnsClaim<'_> {
         };
         match made {
             Err(expected) => (without_corridor(&row.certificate, expected), 0.0),
-            Ok(made) => self.with_corridors(chain, row, (&made, self.at_its_times(turn))),
+            Ok(made) => self.with_corridors(chain, row, &made, self.at_its_times(turn)),
         }
     }
 
@@ -208,7 +208,7 @@ impl TurnsClaim<'_> {
     }
 
     /// `safe` is the verdict that the row has if there is room.
-    fn with_corridors(&self, chain: &Chain, row: &TurnRow, (made, safe): (&TurnCorridors, Verdict)) -> (Outcome, f64) {
+    fn with_corridors(&self, chain: &Chain, row: &TurnRow, made: &TurnCorridors, safe: Verdict) -> (Outcome, f64) {
         let said = &row.certificate;
         let Some(code) = row.path_no else {
             let told = if row_claim::has_numbers(said) {
