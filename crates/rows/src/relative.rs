@@ -119,16 +119,18 @@ impl Relative {
         let vehicle = if reference.in_area { vehicle.in_area() } else { vehicle };
         let own_mm = vehicle.comparable_mm(reference.shrink_milli);
         let relative_mm = own_mm.zip(reference.most_mm()).map(|(own, other)| own - other);
-        Self::new(relative_mm, vehicle.by_room() && reference.by_room())
+        Self::of(relative_mm, [vehicle, reference])
     }
 
     /// Compares a vehicle with itself. The difference is 0: nothing is rounded.
     #[must_use]
     pub fn to_itself(vehicle: Standing) -> Self {
-        Self::new(vehicle.rsc_mm.map(|_| 0), vehicle.by_room())
+        Self::of(vehicle.rsc_mm.map(|_| 0), [vehicle])
     }
 
-    fn new(relative_mm: Option<i64>, by_room: bool) -> Self {
+    /// The comparison of these vehicles, whose difference is `relative_mm`.
+    fn of<const N: usize>(relative_mm: Option<i64>, vehicles: [Standing; N]) -> Self {
+        let by_room = vehicles.iter().all(Standing::by_room);
         let as_reference = by_room && relative_mm.is_some_and(|mm| mm >= 0);
         Self { relative_m: relative_mm.map(|mm| mm as f64 / 1000.0), as_reference }
     }

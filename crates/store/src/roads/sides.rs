@@ -2,6 +2,7 @@
 
 use sqlx::Row as _;
 
+use netcert_base::corridor::Side;
 use netcert_rows::DrivingSides;
 
 use crate::database::Database;
@@ -25,6 +26,7 @@ impl Database {
             let rows = sqlx::query(others).bind(mostly_left).fetch_all(c).await?;
             rows.iter().map(|row| Ok(row.try_get::<u32, _>(0)?.saturating_sub(1))).collect()
         })?;
-        Ok(DrivingSides::new(mostly_left, others))
+        let usual = if mostly_left { Side::Left } else { Side::Right };
+        Ok(DrivingSides::new(usual, others))
     }
 }
