@@ -181,7 +181,7 @@ impl Certifying<'_> {
                 if left.take(turn) {
                     outcome.keep(kept.iter().map(|(kept, _)| kept.verdict()));
                     for (&number, (kept, plan)) in self.numbers.iter().zip(kept) {
-                        writer.kept_turn(number, policy, (turn, kept), plan)?;
+                        writer.kept_turn(number, policy, turn, kept, plan)?;
                     }
                 }
             }

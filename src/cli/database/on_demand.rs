@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{CertifiedSet, Database, Reference};
+use netcert::store::{CertifiedSet, Database, Reference, VehicleSettings};
 use netcert::words::Named;
 use serde_json::json;
 
@@ -53,7 +53,8 @@ pub(crate) fn reference(
             // Checked as it will be, before its turns are made.
             let kept = kept.settings()?;
             let as_it_will_be = Settings { turns: kept.turns || wanted.turns, ..kept };
-            database.alike((&set.vehicle_id, &settings), (vehicle, &as_it_will_be))?;
+            let own = VehicleSettings { vehicle: &set.vehicle_id, settings: &settings };
+            database.alike(own, VehicleSettings { vehicle, settings: &as_it_will_be })?;
         }
         let wanted = Wanted { vehicle, policy: Some(set.policy), ..*wanted };
         (database, _) = certified_like(session, (path, database), &wanted, Some(&settings))?;

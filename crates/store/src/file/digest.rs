@@ -9,18 +9,16 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, Result};
 use sha2::{Digest as _, Sha256};
 
-use crate::provenance::signatures::TABLE;
-
 /// The name under which the schema's own rows are hashed: views, triggers and indices count, too.
 const SCHEMA: &str = "sqlite_schema";
 
-/// SHA-256 of each table, by its name. Without the table of signatures, and without tables of SQLite itself, whose rows say nothing of
+/// SHA-256 of each table, by its name. Without the table `except`, and without tables of SQLite itself, whose rows say nothing of
 /// the region. The content of a virtual table is in its shadow tables.
-pub(crate) fn of_tables(db: &Connection) -> Result<BTreeMap<String, String>> {
+pub(crate) fn of_tables(db: &Connection, except: &str) -> Result<BTreeMap<String, String>> {
     let mut digests = BTreeMap::new();
     let all = "SELECT name FROM pragma_table_list WHERE schema = 'main' AND type IN ('table', 'shadow') \
                AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\' AND name <> ?1";
-    let names: Vec<String> = db.prepare(all)?.query_map([TABLE], |row| row.get(0))?.collect::<Result<_>>()?;
+    let names: Vec<String> = db.prepare(all)?.query_map([except], |row| row.get(0))?.collect::<Result<_>>()?;
     for name in names {
         let (columns, order) = columns(db, &name)?;
         digests.insert(name.clone(), of_rows(db, &name, &columns, &order)?);

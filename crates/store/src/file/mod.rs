@@ -1,12 +1,10 @@
-//! The file itself: its schema, its unfinished part, how it is opened, written and hashed.
+//! The file itself: its connection, its schema, how rows are inserted in bulk, how shapes are encoded, and how the content is hashed.
+//! Nothing here knows what the tables mean.
 
 pub(crate) mod blob;
 pub(crate) mod bulk;
-pub(crate) mod contents;
+pub(crate) mod companions;
 pub(crate) mod digest;
-pub(crate) mod interrupt;
-pub(crate) mod part;
-pub(crate) mod placing;
 pub(crate) mod schema;
 pub(crate) mod session;
-pub(crate) mod styles;
+pub(crate) mod unfinished;

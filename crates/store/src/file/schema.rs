@@ -3,7 +3,8 @@
 use std::sync::LazyLock;
 
 use sqlx::SqlSafeStr as _;
-use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
+use sqlx::sqlite::SqliteConnection;
 
 /// Version, description and statements of each migration. `after data` creates the triggers of the spatial index. The triggers
 /// call functions that only spatial programs have (`ST_IsEmpty`), so netcert inserts all rows of `edge` before it.
@@ -27,7 +28,7 @@ const FILES: &[(i64, &str, &str)] = &[
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know
 /// (BIGINT, TIMESTAMP), and GDAL would warn of them at every listing.
-pub(crate) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
+const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
     version INTEGER PRIMARY KEY NOT NULL,
     description TEXT NOT NULL,
     installed_on DATETIME NOT NULL DEFAULT '1970-01-01T00:00:00.000Z',
@@ -46,6 +47,32 @@ pub(crate) static MIGRATIONS: LazyLock<Migrator> = LazyLock::new(|| {
     };
     Migrator::with_migrations(FILES.iter().map(migration).collect())
 });
+
+/// Applies migrations: all of them, or those up to a version. sqlx records in their table when each ran and how long it took, which would make every file different.
+/// The table is therefore written again without times, and its old content is erased.
+pub(crate) async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Result<(), sqlx::Error> {
+    sqlx::query(APPLIED).execute(&mut *c).await?;
+    let done = match up_to {
+        Some(version) => MIGRATIONS.run_to(version, &mut *c).await,
+        None => MIGRATIONS.run(&mut *c).await,
+    };
+    done.map_err(|e| match e {
+        MigrateError::Execute(e) | MigrateError::ExecuteMigration(e, _) => e,
+        other => sqlx::Error::Migrate(Box::new(other)),
+    })?;
+    sqlx::raw_sql(
+        "PRAGMA secure_delete = ON;
+         CREATE TEMP TABLE applied AS SELECT version, description, success, checksum FROM main._sqlx_migrations;
+         DELETE FROM _sqlx_migrations;
+         INSERT INTO _sqlx_migrations SELECT version, description, '1970-01-01T00:00:00.000Z', success, checksum, 0
+             FROM temp.applied ORDER BY version;
+         DROP TABLE temp.applied;
+         PRAGMA secure_delete = OFF;",
+    )
+    .execute(c)
+    .await?;
+    Ok(())
+}
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

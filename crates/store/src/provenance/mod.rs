@@ -1,5 +1,4 @@
 //! Records of vehicles, runs and signatures.
 
-pub(crate) mod known_vehicles;
 pub(crate) mod records;
 pub(crate) mod signatures;

@@ -1,10 +1,12 @@
 //! The records of a database about its vehicles and the runs that made it.
 
-use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
+use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::account::AccountRow;
 
+use crate::database::Database;
+use crate::error::StoreError;
 use crate::file::bulk::Bulk;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -55,6 +57,51 @@ impl Run {
     pub fn read_extract(&self) -> bool {
         self.input_blake3.is_some()
     }
+}
+
+impl Database {
+    /// The vehicles, in the order in which they were added.
+    pub fn vehicles(&mut self) -> Result<Vec<VehicleRecord>, StoreError> {
+        self.session.run(async |c| {
+            let rows = sqlx::query_as("SELECT vehicle_id, name, definition FROM vehicle ORDER BY vehicle_no");
+            let rows: Vec<(String, String, String)> = rows.fetch_all(c).await?;
+            Ok(rows.into_iter().map(|(id, name, definition)| VehicleRecord { id, name, definition }).collect())
+        })
+    }
+
+    /// The runs that made the file, oldest first, each with its account.
+    pub fn runs(&mut self) -> Result<Vec<(Run, Vec<AccountRow>)>, StoreError> {
+        self.session.run(async |c| {
+            let mut runs = Vec::new();
+            for row in sqlx::query("SELECT * FROM run ORDER BY run_id").fetch_all(&mut *c).await? {
+                let run = Run {
+                    command: row.try_get(1)?,
+                    input_name: row.try_get(2)?,
+                    input_blake3: row.try_get(3)?,
+                    replication_timestamp: row.try_get(4)?,
+                    netcert_version: row.try_get(5)?,
+                    started: row.try_get(6)?,
+                    finished: row.try_get(7)?,
+                    parameters: row.try_get(8)?,
+                };
+                runs.push((run, account_of(c, row.try_get(0)?).await?));
+            }
+            Ok(runs)
+        })
+    }
+}
+
+async fn account_of(c: &mut SqliteConnection, run_id: i64) -> Sql<Vec<AccountRow>> {
+    let sql = "SELECT stage, item, outcome, reason, count FROM account WHERE run_id = ? ORDER BY account_no";
+    let rows: Vec<(String, String, String, String, i64)> = sqlx::query_as(sql).bind(run_id).fetch_all(c).await?;
+    let row = |(stage, item, outcome, reason, count): (_, _, _, _, i64)| AccountRow {
+        stage,
+        item,
+        outcome,
+        reason,
+        count: count.unsigned_abs(),
+    };
+    Ok(rows.into_iter().map(row).collect())
 }
 
 /// Adds a run with its account and returns the run's number.

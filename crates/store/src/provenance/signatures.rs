@@ -11,8 +11,8 @@ use crate::file::digest;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// The table's name.
-pub(crate) const TABLE: &str = "signature";
+/// The table's name. What is signed is the content of all others.
+const TABLE: &str = "signature";
 
 /// A signature as it is stored. Whoever reads it checks it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Database {
 }
 
 async fn content(c: &mut SqliteConnection) -> Sql<BTreeMap<String, String>> {
-    bulk::with_rusqlite(c, digest::of_tables).await
+    bulk::with_rusqlite(c, |db| digest::of_tables(db, TABLE)).await
 }
 
 async fn replace(c: &mut SqliteConnection, record: &SignatureRecord) -> Sql<()> {

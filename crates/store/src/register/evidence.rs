@@ -8,11 +8,12 @@ use crate::words::Named;
 use netcert_evidence::{Columns, Counted, Edges, Entry, Quantity, Row, State, Target, Value, parts, surface};
 use netcert_rows::Bounds;
 
+use crate::columns::read::{rows, word};
 use crate::database::Database;
+use crate::database::register_state::RegisterState;
 use crate::error::{StoreError, content};
 use crate::file::bulk::Bulk;
-use crate::results::sets::add_layer_of;
-use crate::roads::network_read::{rows, word};
+use crate::layers::contents::Layer;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -25,9 +26,6 @@ pub struct Register {
     pub last_no: i64,
 }
 
-/// Tells one state of a register from all later ones: numbers only grow, and removing lowers the count.
-pub(crate) type RegisterState = (i64, i64);
-
 impl Database {
     /// The register of measurements.
     ///
@@ -38,16 +36,8 @@ impl Database {
     }
 }
 
-pub(crate) async fn state(c: &mut SqliteConnection) -> Sql<RegisterState> {
-    sqlx::query_as(
-        "SELECT (SELECT count(*) FROM evidence), coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'evidence'), 0)",
-    )
-    .fetch_one(c)
-    .await
-}
-
-pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Register> {
-    let (_, last_no) = state(c).await?;
+async fn read(c: &mut SqliteConnection) -> Sql<Register> {
+    let RegisterState { last_no, .. } = RegisterState::read(c).await?;
     let mut entries = rows(c, "SELECT * FROM evidence ORDER BY evidence_no", entry).await?;
     let places = "SELECT evidence_no, edge_id, node, from_edge, to_edge, counts, quantity FROM evidence_place \
                   JOIN (SELECT evidence_no, quantity FROM evidence) USING (evidence_no) ORDER BY place_no";
@@ -234,7 +224,8 @@ fn add(bulk: &mut Bulk, entry: &Entry) {
 
 /// Registers the measurements as a layer, and their places as a table.
 async fn add_layers(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    add_layer_of(c, ("evidence", "GEOMETRY"), "Measurements", time, bounds).await?;
+    let layer = Layer { table: "evidence", geometries: "GEOMETRY", description: "Measurements", bounds };
+    layer.add(c, time).await?;
     let sql = "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) \
                VALUES ('evidence_place', 'attributes', 'evidence_place', 'Where measurements belong', ?)";
     sqlx::query(sql).bind(time).execute(c).await?;

@@ -1,6 +1,5 @@
-//! The register of measurements, and what a change of it changes.
+//! The register of measurements.
 
-pub(crate) mod amend;
 pub(crate) mod evidence;
+pub(crate) mod known_vehicles;
 pub(crate) mod measurements;
-pub(crate) mod renewal;

@@ -8,11 +8,10 @@ use crate::osm::facts::Policy;
 use crate::verdict::Verdict;
 use netcert_rows::{EdgeMeasure, StoredPlan};
 
+use crate::columns::names::{corridor_no, verdict_of};
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::results::compact::CompactCertificate;
-use crate::results::names::{corridor_no, verdict_of};
-use crate::writer::{VehicleNo, Writer};
 
 /// Rows of a set that SQLite hands over as one text. Each row that sqlx hands over by itself costs a microsecond or more: a quarter of a
 /// million rows took 0.6 s.
@@ -21,7 +20,7 @@ pub(crate) const PAGE_ROWS: usize = 1000;
 /// A stored certificate of an edge or a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StoredCertificate {
-    packed: CompactCertificate,
+    pub(crate) packed: CompactCertificate,
     verdict: Verdict,
 }
 
@@ -138,34 +137,4 @@ fn packed(row: Numbers) -> Option<CompactCertificate> {
         needs_cm: [narrow(need)?, narrow(other_need)?],
         path_no,
     })
-}
-
-impl Writer {
-    /// Adds a certificate of an older database for the edge with this index.
-    ///
-    /// # Errors
-    /// A temporary file cannot be written.
-    pub fn kept(
-        &mut self,
-        vehicle: VehicleNo,
-        policy: Policy,
-        edge: u32,
-        kept: &StoredCertificate,
-    ) -> Result<(), StoreError> {
-        self.push(vehicle, policy, CompactCertificate { fid: edge + 1, ..kept.packed })
-    }
-
-    /// Adds a certificate of an older database for the turn with this index.
-    ///
-    /// # Errors
-    /// A temporary file cannot be written.
-    pub fn kept_turn(
-        &mut self,
-        vehicle: VehicleNo,
-        policy: Policy,
-        (turn, kept): (u32, &StoredCertificate),
-        plan: Option<StoredPlan>,
-    ) -> Result<(), StoreError> {
-        self.push_turn(vehicle, policy, CompactCertificate { fid: turn + 1, ..kept.packed }, plan)
-    }
 }

@@ -202,7 +202,7 @@ fn check_sum(bytes: &[u8]) -> [u8; 8] {
 
 /// The file of the finished work for a database at `target`.
 pub(crate) fn path_of(target: &Path) -> PathBuf {
-    crate::file::part::with_suffix(target, ".done")
+    crate::file::companions::with_suffix(target, ".done")
 }
 
 #[cfg(test)]

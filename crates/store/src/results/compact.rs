@@ -4,8 +4,8 @@
 use crate::verdict::Verdict;
 use netcert_rows::{Conclusion, EdgeCertificate, TurnCertificate};
 
+use crate::columns::names::verdict_no;
 use crate::file::bulk::Bulk;
-use crate::results::names::verdict_no;
 
 /// A row of `certificate_compact` without vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -6,16 +6,11 @@ use sqlx::sqlite::SqliteRow;
 use netcert_base::corridor::Side;
 use netcert_rows::CertificateRow;
 
-use crate::roads::network_read::verdict;
+use crate::columns::read::verdict;
 
 /// The columns of a table called `c`, in the order that [`read`] expects.
 pub(crate) const COLUMNS: &str = "c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, c.shrink_milli, \
                                   c.limiting_s_dm, c.limiting_at";
-
-/// A column in centimetres, as metres.
-pub(crate) fn centimetres(row: &SqliteRow, column: usize) -> Result<Option<f64>, sqlx::Error> {
-    Ok(row.try_get::<Option<i64>, _>(column)?.map(|cm| cm as f64 / 100.0))
-}
 
 /// Reads the columns `first` to `first + 6`; `what` names the row in errors.
 pub(crate) fn read(

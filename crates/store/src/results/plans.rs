@@ -9,10 +9,11 @@ use sqlx::sqlite::SqliteConnection;
 use crate::osm::facts::Policy;
 use netcert_rows::{StoredPlan, unpack};
 
+use crate::columns::names::corridor_no;
+use crate::columns::set_no::SetNo;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::bulk::Bulk;
-use crate::results::names::corridor_no;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -31,14 +32,14 @@ pub(crate) fn sorted(plans: &mut [StoredPlan]) -> impl Iterator<Item = io::Resul
 pub(crate) async fn insert(
     c: &mut SqliteConnection,
     into: &'static str,
-    (vehicle_no, corridor): (u32, u8),
+    set: SetNo,
     plans: impl Iterator<Item = io::Result<StoredPlan>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(into, 4);
     for plan in plans {
         let plan = plan?;
-        bulk.add(vehicle_no);
-        bulk.add(corridor);
+        bulk.add(set.vehicle_no);
+        bulk.add(set.corridor_no());
         bulk.add(plan.at + 1);
         bulk.add(plan.packed);
         bulk.end_row(c).await?;

@@ -14,11 +14,11 @@ use crate::osm::facts::{Policy, WidthSource};
 use crate::words::{Named, VerdictKind};
 use netcert_rows::{Bounds, EdgeRow};
 
+use crate::columns::names::{corridor_no, of_kind, width_columns};
+use crate::columns::read::{centimetres, line, word, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::names::{corridor_no, of_kind, width_columns};
 use crate::results::numbers;
-use crate::roads::network_read::{line, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -205,7 +205,7 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         width_source: word_or_none(row, 11)?,
         min_radius_m: row.try_get(12)?,
         maxspeed_kmh: row.try_get(14)?,
-        need_width_m: numbers::centimetres(row, 15)?,
+        need_width_m: centimetres(row, 15)?,
         certificate: numbers::read(row, 16, || format!("edge {fid}"))?,
         line: line(row, 13, || format!("edge {fid}"))?,
     })

@@ -20,13 +20,13 @@ use crate::words::Named as _;
 use netcert_rows::settings::Settings;
 use netcert_rows::{Relative, RelativeCount, Standing};
 
+use crate::columns::names::verdict_no;
+use crate::columns::read::verdict;
 use crate::database::Database;
+use crate::database::streamed::Streamed;
 use crate::error::StoreError;
-use crate::provenance::known_vehicles::KnownVehicle;
-use crate::results::names::verdict_no;
+use crate::register::known_vehicles::KnownVehicle;
 use crate::results::settings::CertifiedSet;
-use crate::results::stream::Streamed;
-use crate::roads::network_read::verdict;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -35,6 +35,15 @@ pub type IndexedStanding = (u32, Standing);
 
 /// Instead of a vehicle's id: on each road the vehicles that the register knows to go there.
 pub const DRIVABLE_BY: &str = "drivable_by";
+
+/// A vehicle, and the settings that it was, or would be, certified with.
+#[derive(Debug, Clone, Copy)]
+pub struct VehicleSettings<'a> {
+    /// Id of the vehicle.
+    pub vehicle: &'a str,
+    /// The settings.
+    pub settings: &'a Settings,
+}
 
 /// A reference whose certificates were made like those of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,31 +79,39 @@ impl Database {
             if !same {
                 let other = self.certified_set(&id, set.policy)?;
                 let other = other.ok_or_else(|| StoreError::not_certified(&self.session.path, &id, set.policy))?;
-                self.alike((&set.vehicle_id, &set.settings()?), (&id, &other.settings()?))?;
+                let own = VehicleSettings { vehicle: &set.vehicle_id, settings: &set.settings()? };
+                self.alike(own, VehicleSettings { vehicle: &id, settings: &other.settings()? })?;
             }
             all.push(ReferenceVehicle { id, same, known });
         }
         Ok(Reference { id: reference.to_owned(), policy: set.policy, vehicles: all })
     }
 
+    /// The ids of the vehicles that a reference stands for: of [`DRIVABLE_BY`], those that the register knows to go somewhere.
+    ///
+    /// # Errors
+    /// The register knows none ([`StoreError::NotThere`]); the file cannot be read.
+    pub fn reference_ids(&mut self, reference: &str) -> Result<Vec<String>, StoreError> {
+        match reference {
+            DRIVABLE_BY => Ok(self.known_vehicles()?.into_keys().collect()),
+            _ => Ok(vec![reference.to_owned()]),
+        }
+    }
+
     /// Checks that two vehicles were, or would be, certified with the same settings under the same policy.
     ///
     /// # Errors
     /// The settings differ ([`StoreError::NotAlike`]).
-    pub fn alike(
-        &self,
-        (vehicle, settings): (&str, &Settings),
-        (reference, others): (&str, &Settings),
-    ) -> Result<(), StoreError> {
-        if settings == others {
+    pub fn alike(&self, own: VehicleSettings<'_>, reference: VehicleSettings<'_>) -> Result<(), StoreError> {
+        if own.settings == reference.settings {
             return Ok(());
         }
         Err(StoreError::NotAlike {
             path: self.session.path.clone(),
-            vehicle: vehicle.to_owned(),
-            reference: reference.to_owned(),
-            policy: settings.policy.name(),
-            differ: differences(settings, others),
+            vehicle: own.vehicle.to_owned(),
+            reference: reference.vehicle.to_owned(),
+            policy: own.settings.policy.name(),
+            differ: differences(own.settings, reference.settings),
         })
     }
 

@@ -9,10 +9,12 @@ use crate::osm::facts::Policy;
 use crate::words::Named;
 use netcert_rows::Bounds;
 
+use crate::columns::names::{SAFE, corridor_no, width_columns};
+use crate::columns::set_no::SetNo;
 use crate::file::bulk::Bulk;
-use crate::file::styles::{self, Shows};
+use crate::layers::contents::Layer;
+use crate::layers::styles::{self, Shows};
 use crate::results::compact::CompactCertificate;
-use crate::results::names::{SAFE, corridor_no, width_columns};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -65,14 +67,14 @@ impl Complete {
 /// Inserts certificates of edges.
 pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
-    (vehicle_no, corridor): (u32, u8),
+    set: SetNo,
     rows: impl Iterator<Item = io::Result<CompactCertificate>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 11);
     for row in rows {
         let row = row?;
-        bulk.add(vehicle_no);
-        bulk.add(corridor);
+        bulk.add(set.vehicle_no);
+        bulk.add(set.corridor_no());
         row.add_to(&mut bulk);
         bulk.end_row(c).await?;
     }
@@ -101,18 +103,18 @@ impl Set<'_> {
         rows: impl Iterator<Item = io::Result<CompactCertificate>>,
         edges: u32,
     ) -> Sql<Result<(), Fault>> {
-        let corridor = corridor_no(self.policy);
+        let set = SetNo { vehicle_no: self.vehicle_no, policy: self.policy };
         let mut complete = Complete::new(edges);
         let rows = rows.inspect(|row| row.iter().for_each(|row| complete.look_at(row)));
-        insert_rows(c, (self.vehicle_no, corridor), rows).await?;
+        insert_rows(c, set, rows).await?;
         let rows = match complete.finish() {
             Ok(rows) => rows,
             Err(fault) => return Ok(Err(fault)),
         };
         let layer = self.layer_name(c).await?;
         sqlx::query("INSERT INTO certified_set VALUES (?, ?, ?, ?, ?, ?)")
-            .bind(self.vehicle_no)
-            .bind(corridor)
+            .bind(set.vehicle_no)
+            .bind(set.corridor_no())
             .bind(self.run_id)
             .bind(rows)
             .bind(&layer)
@@ -158,7 +160,8 @@ impl Set<'_> {
         sqlx::query(AssertSqlSafe(view)).persistent(false).execute(&mut *c).await?;
         let description = format!("Roads that {} may use ({} policy)", self.vehicle_name, self.policy.name());
         let bounds = network_bounds(c).await?;
-        add_layer(c, layer, &description, self.time, bounds).await?;
+        let listed = Layer { table: layer, geometries: "LINESTRING", description: &description, bounds };
+        listed.add(c, self.time).await?;
         styles::add(c, layer, Shows::Permits, self.time).await
     }
 }
@@ -171,52 +174,14 @@ async fn network_bounds(c: &mut SqliteConnection) -> Sql<Option<Bounds>> {
     Ok(bounds.map(|(west, south, east, north)| Bounds { west, south, east, north }))
 }
 
-/// Registers a table or view of lines as a layer.
-pub(crate) async fn add_layer(
-    c: &mut SqliteConnection,
-    table: &str,
-    description: &str,
-    time: &str,
-    bounds: Option<Bounds>,
-) -> Sql<()> {
-    add_layer_of(c, (table, "LINESTRING"), description, time, bounds).await
-}
-
-/// Registers a table or view as a layer of geometries of a type.
-pub(crate) async fn add_layer_of(
-    c: &mut SqliteConnection,
-    (table, geometries): (&str, &str),
-    description: &str,
-    time: &str,
-    bounds: Option<Bounds>,
-) -> Sql<()> {
-    sqlx::query("INSERT INTO gpkg_contents VALUES (?, 'features', ?, ?, ?, ?, ?, ?, ?, 4326)")
-        .bind(table)
-        .bind(table)
-        .bind(description)
-        .bind(time)
-        .bind(bounds.map(|b| b.west))
-        .bind(bounds.map(|b| b.south))
-        .bind(bounds.map(|b| b.east))
-        .bind(bounds.map(|b| b.north))
-        .execute(&mut *c)
-        .await?;
-    sqlx::query("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, 4326, 0, 0)")
-        .bind(table)
-        .bind(geometries)
-        .execute(c)
-        .await?;
-    Ok(())
-}
-
 /// Removes a set with its turns and its layer.
-pub(crate) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+pub(crate) async fn remove(c: &mut SqliteConnection, set: SetNo) -> Sql<()> {
     // Certificates of turns depend on the verdicts of edges.
-    crate::results::turns::remove(c, vehicle_no, corridor_no).await?;
+    crate::results::turns::remove(c, set).await?;
     let layer: Option<String> =
         sqlx::query_scalar("SELECT layer FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?")
-            .bind(vehicle_no)
-            .bind(corridor_no)
+            .bind(set.vehicle_no)
+            .bind(set.corridor_no())
             .fetch_optional(&mut *c)
             .await?;
     let Some(layer) = layer else { return Ok(()) };
@@ -233,7 +198,7 @@ pub(crate) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_n
         "DELETE FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?",
         "DELETE FROM certificate_compact WHERE vehicle_no = ? AND corridor_no = ?",
     ] {
-        sqlx::query(sql).bind(vehicle_no).bind(corridor_no).execute(&mut *c).await?;
+        sqlx::query(sql).bind(set.vehicle_no).bind(set.corridor_no()).execute(&mut *c).await?;
     }
     Ok(())
 }

@@ -11,9 +11,9 @@ use crate::osm::facts::Policy;
 use crate::words::Named;
 use netcert_rows::settings::Settings;
 
+use crate::columns::read::word;
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::roads::network_read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;
 

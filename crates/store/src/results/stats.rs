@@ -8,11 +8,11 @@ use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named;
 use netcert_rows::{NeedCount, Stats, StatsRow};
 
+use crate::columns::names::verdict_no;
+use crate::columns::read::{verdict, word, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::names::verdict_no;
 use crate::results::turns;
-use crate::roads::network_read::{verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

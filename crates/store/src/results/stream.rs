@@ -2,43 +2,21 @@
 //!
 //! Rows come in order of the network. Only some rows are in memory at the same time, whatever the size of the network.
 
-use std::path::Path;
-use std::pin::Pin;
-
-use futures_util::{Stream, TryStreamExt as _};
+use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
-use sqlx::{AssertSqlSafe, Row as _};
-use tokio::runtime::Runtime;
 
 use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
+use crate::columns::names::width_columns;
+use crate::columns::read::{verdict, word, word_or_none};
 use crate::database::Database;
+use crate::database::streamed::Streamed;
 use crate::error::{StoreError, content};
 use crate::file::blob;
-use crate::results::names::{corridor_no, width_columns};
 use crate::results::turns::{self, TurnQuery};
-use crate::roads::network_read::{verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// Rows that are read from the file one by one.
-pub struct Streamed<'d, T> {
-    stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
-    runtime: &'d Runtime,
-    path: &'d Path,
-    read: fn(&SqliteRow) -> Sql<T>,
-}
-
-impl<T> Iterator for Streamed<'_, T> {
-    type Item = Result<T, StoreError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let row = self.runtime.block_on(self.stream.try_next());
-        let row = row.and_then(|row| row.as_ref().map(self.read).transpose());
-        row.map_err(|e| StoreError::sql(self.path, e)).transpose()
-    }
-}
 
 /// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
 pub type StraightOn = (u32, Option<u32>);
@@ -76,9 +54,7 @@ impl Database {
     /// The file cannot be read.
     pub fn turn_rows(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnRow>, StoreError> {
         let sql = turns::statement(&TurnQuery::new(vehicle, policy));
-        let query = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle.to_owned());
-        let stream = query.fetch(&mut self.session.connection);
-        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: turns::turn_row })
+        Ok(self.streamed(sql, vehicle, policy, turns::turn_row))
     }
 
     /// The sequences of edges (indices into `Network::edges`) of turn restrictions. They are few, so all are read at once.
@@ -123,24 +99,6 @@ impl Database {
             let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
             Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
         })
-    }
-
-    /// The rows of a statement without parameters.
-    pub(crate) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
-        let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
-        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
-    }
-
-    pub(crate) fn streamed<T>(
-        &mut self,
-        sql: String,
-        vehicle: &str,
-        policy: Policy,
-        read: fn(&SqliteRow) -> Sql<T>,
-    ) -> Streamed<'_, T> {
-        let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle.to_owned()).bind(corridor_no(policy));
-        let stream = query.fetch(&mut self.session.connection);
-        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 }
 

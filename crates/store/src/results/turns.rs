@@ -14,19 +14,21 @@ use crate::words::VerdictKind;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 
+use crate::columns::names::{corridor_no, of_kind};
+use crate::columns::read::{centimetres, line, verdict, word};
+use crate::columns::set_no::SetNo;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
-use crate::file::styles::{self, Shows};
+use crate::layers::contents::Layer;
+use crate::layers::styles::{self, Shows};
 use crate::results::compact::CompactCertificate;
-use crate::results::names::{corridor_no, of_kind};
-use crate::results::numbers::{self, centimetres};
+use crate::results::numbers;
 use crate::results::plans;
 use crate::results::query::{Area, polygons};
 use crate::results::sets::{self, Complete, Fault};
 use crate::roads::junctions;
-use crate::roads::network_read::{line, verdict, word};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -145,21 +147,22 @@ pub(crate) async fn write(
 
 /// Registers the turns as a layer.
 pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;
+    let layer = Layer { table: "turn", geometries: "LINESTRING", description: "Turns at junctions", bounds };
+    layer.add(c, time).await?;
     styles::add(c, "turn", Shows::Turns, time).await
 }
 
 /// Inserts certificates of turns.
 pub(crate) async fn insert_rows(
     c: &mut SqliteConnection,
-    (vehicle_no, corridor): (u32, u8),
+    set: SetNo,
     rows: impl Iterator<Item = io::Result<CompactCertificate>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
         let row = row?;
-        bulk.add(vehicle_no);
-        bulk.add(corridor);
+        bulk.add(set.vehicle_no);
+        bulk.add(set.corridor_no());
         row.add_to(&mut bulk);
         bulk.add(row.needs_cm[1]);
         bulk.add(row.path_no);
@@ -172,30 +175,30 @@ pub(crate) async fn insert_rows(
 /// must be thrown away.
 pub(crate) async fn insert(
     c: &mut SqliteConnection,
-    (vehicle_no, policy, run_id): (u32, Policy, i64),
+    set: SetNo,
+    run_id: i64,
     rows: impl Iterator<Item = io::Result<CompactCertificate>>,
     plans: impl Iterator<Item = io::Result<StoredPlan>>,
     turns: u32,
 ) -> Sql<Result<(), Fault>> {
-    let corridor = corridor_no(policy);
     let mut complete = Complete::new(turns);
     let rows = rows.inspect(|row| row.iter().for_each(|row| complete.look_at(row)));
-    insert_rows(c, (vehicle_no, corridor), rows).await?;
-    plans::insert(c, plans::TURNS, (vehicle_no, corridor), plans).await?;
+    insert_rows(c, set, rows).await?;
+    plans::insert(c, plans::TURNS, set, plans).await?;
     let rows = match complete.finish() {
         Ok(rows) => rows,
         Err(fault) => return Ok(Err(fault)),
     };
-    let set = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(vehicle_no).bind(corridor);
-    set.bind(run_id).bind(rows).execute(c).await?;
+    let insert = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(set.vehicle_no);
+    insert.bind(set.corridor_no()).bind(run_id).bind(rows).execute(c).await?;
     Ok(Ok(()))
 }
 
 /// Removes a set, if there is one.
-pub(crate) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+pub(crate) async fn remove(c: &mut SqliteConnection, set: SetNo) -> Sql<()> {
     for table in ["certified_turns", "turn_plan", "turn_certificate_compact"] {
         let sql = format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ?");
-        sqlx::query(AssertSqlSafe(sql)).bind(vehicle_no).bind(corridor_no).execute(&mut *c).await?;
+        sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle_no).bind(set.corridor_no()).execute(&mut *c).await?;
     }
     Ok(())
 }
@@ -229,6 +232,17 @@ impl TurnQuery {
 }
 
 impl Database {
+    /// Whether the database has the turns of its network.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn keeps_turns(&mut self) -> Result<bool, StoreError> {
+        let layers: i64 = self.session.run(async |c| {
+            sqlx::query_scalar("SELECT count(*) FROM gpkg_contents WHERE table_name = 'turn'").fetch_one(c).await
+        })?;
+        Ok(layers > 0)
+    }
+
     /// Whether this vehicle's turns are certified under this policy.
     ///
     /// # Errors
@@ -266,8 +280,9 @@ impl Database {
 /// have certificates of turns for this vehicle and policy.
 pub(crate) async fn insert_set(
     c: &mut SqliteConnection,
-    (vehicle_no, policy, run_id): (u32, Policy, i64),
-    set: &TurnSet<'_>,
+    set: SetNo,
+    run_id: i64,
+    made: &TurnSet<'_>,
     packed: &mut PackedSet,
     time: &str,
 ) -> Sql<()> {
@@ -277,25 +292,25 @@ pub(crate) async fn insert_set(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        let record = |(index, facts)| Ok((index, Record::new(set.network, facts, |edge| edge)));
-        let bounds = write(c, (0..).zip(set.facts).map(record)).await?;
+        let record = |(index, facts)| Ok((index, Record::new(made.network, facts, |edge| edge)));
+        let bounds = write(c, (0..).zip(made.facts).map(record)).await?;
         register(c, bounds, time).await?;
-        let around = junctions::insert(c, set.junctions.iter().cloned().map(Ok)).await?;
+        let around = junctions::insert(c, made.junctions.iter().cloned().map(Ok)).await?;
         junctions::register(c, around, time).await?;
-    } else if kept != set.facts.len() as i64 {
-        return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
+    } else if kept != made.facts.len() as i64 {
+        return Err(content(format!("{kept} turns are stored, the network has {}", made.facts.len())));
     }
     let (rows, plans) = (packed.rows.iter().copied().map(Ok), plans::sorted(&mut packed.plans));
-    let inserted = insert(c, (vehicle_no, policy, run_id), rows, plans, packed.rows.len() as u32).await?;
+    let inserted = insert(c, set, run_id, rows, plans, packed.rows.len() as u32).await?;
     inserted.map_err(|(turn, detail)| content(format!("turn {turn}: {detail}")))
 }
 
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {
-    let rows = sqlx::query(AssertSqlSafe(statement(options))).bind(corridor_no(options.policy)).bind(&options.vehicle);
+    let rows = sqlx::query(AssertSqlSafe(statement(options))).bind(&options.vehicle).bind(corridor_no(options.policy));
     rows.fetch_all(c).await?.iter().map(turn_row).collect()
 }
 
-/// The statement of a query, whose rows [`turn_row`] reads. The caller binds the corridor's number and the vehicle's id.
+/// The statement of a query, whose rows [`turn_row`] reads. The caller binds the vehicle's id and the corridor's number.
 pub(crate) fn statement(options: &TurnQuery) -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
@@ -305,7 +320,7 @@ pub(crate) fn statement(options: &TurnQuery) -> String {
     sql += numbers::COLUMNS;
     sql += " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
             CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
-            WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)";
+            WHERE c.corridor_no = ?2 AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?1)";
     if let Some(kind) = options.verdict {
         sql += &format!(" AND {}", of_kind("c.verdict_no", kind));
     }

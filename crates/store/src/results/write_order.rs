@@ -7,15 +7,13 @@ use std::path::Path;
 
 use netcert_rows::StoredPlan;
 
-use crate::file::part::sorter;
+use crate::columns::set_no::SetNo;
+use crate::file::companions::sorter;
 use crate::results::compact::CompactCertificate;
 use netcert_files::sorter::{Sorted, Sorter};
 
-/// Vehicle number and corridor number.
-pub(crate) type SetNo = (u32, u8);
-
 /// Set, and index of the edge or turn.
-type Key = (u32, u8, u32);
+type Key = (SetNo, u32);
 
 /// Certificates of edges or of turns, with their plans.
 pub(crate) struct CertificateSorter {
@@ -30,12 +28,12 @@ impl CertificateSorter {
         Ok(Self { certificates, plans: sorter(path, "-plans")? })
     }
 
-    pub(crate) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: CompactCertificate) -> io::Result<()> {
-        self.certificates.push((vehicle, corridor, packed.fid), &packed)
+    pub(crate) fn certificate(&mut self, set: SetNo, packed: CompactCertificate) -> io::Result<()> {
+        self.certificates.push((set, packed.fid), &packed)
     }
 
-    pub(crate) fn plan(&mut self, (vehicle, corridor): SetNo, plan: &StoredPlan) -> io::Result<()> {
-        self.plans.push((vehicle, corridor, plan.at), plan)
+    pub(crate) fn plan(&mut self, set: SetNo, plan: &StoredPlan) -> io::Result<()> {
+        self.plans.push((set, plan.at), plan)
     }
 
     /// The same with other indices. Temporary files are made at `path` with a word after it.
@@ -46,12 +44,12 @@ impl CertificateSorter {
             number.ok_or_else(|| io::Error::other(format!("there is a certificate of turn {index}, but no such turn")))
         };
         for row in self.certificates.sorted()? {
-            let ((vehicle, corridor, fid), packed) = row?;
-            new.certificate((vehicle, corridor), CompactCertificate { fid: number(fid - 1)? + 1, ..packed })?;
+            let ((set, fid), packed) = row?;
+            new.certificate(set, CompactCertificate { fid: number(fid - 1)? + 1, ..packed })?;
         }
         for row in self.plans.sorted()? {
-            let ((vehicle, corridor, at), plan) = row?;
-            new.plan((vehicle, corridor), &StoredPlan { at: number(at)?, ..plan })?;
+            let ((set, at), plan) = row?;
+            new.plan(set, &StoredPlan { at: number(at)?, ..plan })?;
         }
         Ok(new)
     }
@@ -73,8 +71,7 @@ where
 {
     /// The set of the next row. `None` if there is none.
     pub(crate) fn next_set(&mut self) -> io::Result<Option<SetNo>> {
-        let set =
-            self.0.peek().and_then(|row| row.as_ref().ok()).map(|((vehicle, corridor, _), _)| (*vehicle, *corridor));
+        let set = self.0.peek().and_then(|row| row.as_ref().ok()).map(|((set, _), _)| *set);
         match set {
             Some(set) => Ok(Some(set)),
             None => self.0.next().transpose().map(|_| None),
@@ -83,8 +80,7 @@ where
 
     /// The rows that come next, as long as they are of a set.
     pub(crate) fn of(&mut self, set: SetNo) -> impl Iterator<Item = io::Result<T>> {
-        let next =
-            move || self.0.next_if(|row| row.as_ref().is_ok_and(|((v, c, _), _)| (*v, *c) == set) || row.is_err());
+        let next = move || self.0.next_if(|row| row.as_ref().is_ok_and(|((of, _), _)| *of == set) || row.is_err());
         std::iter::from_fn(next).map(|row| row.map(|(_, row)| row))
     }
 }
@@ -93,8 +89,13 @@ where
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::osm::facts::Policy;
     use crate::verdict::{UnknownReason, Verdict};
     use netcert_rows::Conclusion;
+
+    fn set(vehicle_no: u32, policy: Policy) -> SetNo {
+        SetNo { vehicle_no, policy }
+    }
 
     #[test]
     fn sets_come_back_in_order_whatever_the_order_they_came_in() {
@@ -102,9 +103,9 @@ mod tests {
         let mut waiting = CertificateSorter::create(&folder.path().join("edges")).unwrap();
         let edges = 10_007_u32;
         for i in 0..edges {
-            for set in [(3, 0), (1, 2), (1, 0)] {
+            for set in [set(3, Policy::Lane), set(1, Policy::Carriageway), set(1, Policy::Lane)] {
                 // 4001 and 10,007 share no factor, so every edge comes once, in a scattered order.
-                let edge = (i * 4001 + set.0) % edges;
+                let edge = (i * 4001 + set.vehicle_no) % edges;
                 let none = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut));
                 let packed = CompactCertificate::conclusion(&none, edge).unwrap();
                 waiting.certificate(set, packed).unwrap();
@@ -116,7 +117,7 @@ mod tests {
         let backwards: Vec<u32> = (0..edges).rev().collect();
         let renumbered = waiting.renumbered(&folder.path().join("again"), &backwards).unwrap();
         let (mut certificates, mut plans) = renumbered.sorted().unwrap();
-        for expected in [(1, 0), (1, 2), (3, 0)] {
+        for expected in [set(1, Policy::Lane), set(1, Policy::Carriageway), set(3, Policy::Lane)] {
             assert_eq!(certificates.next_set().unwrap(), Some(expected));
             assert!(certificates.of(expected).map(|row| row.unwrap().fid).eq(1..=edges));
             assert!(plans.of(expected).map(|plan| plan.unwrap().at).eq((0..edges).filter(|at| at % 10 == 6)));

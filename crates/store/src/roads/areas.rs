@@ -7,10 +7,10 @@ use crate::network::Area;
 use crate::osm::facts::{AreaKind, RoadClass};
 use crate::words::Named;
 
+use crate::columns::read::{line, rows};
 use crate::error::content;
 use crate::file::blob;
 use crate::file::bulk::Bulk;
-use crate::roads::network_read::{line, rows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

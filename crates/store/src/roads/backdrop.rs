@@ -11,11 +11,11 @@ use crate::osm::{Backdrop, BackdropShape};
 use crate::words::Named as _;
 use netcert_rows::{Bounds, MapBackdrop};
 
+use crate::columns::read::word;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::Bulk;
-use crate::roads::network_read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;
 

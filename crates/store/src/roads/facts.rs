@@ -6,10 +6,10 @@ use sqlx::{AssertSqlSafe, Row as _};
 use crate::osm::facts::Policy;
 use netcert_rows::EdgeFacts;
 
+use crate::columns::read::{line, word, word_or_none};
 use crate::database::Database;
+use crate::database::streamed::Streamed;
 use crate::error::StoreError;
-use crate::results::stream::Streamed;
-use crate::roads::network_read::{line, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

@@ -9,13 +9,13 @@ use crate::osm::LonLat;
 use netcert_roads::turns::{JunctionArea, KerbSource};
 use netcert_rows::Bounds;
 
+use crate::columns::read::rows;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
-use crate::file::styles::{self, Shows};
-use crate::results::sets;
-use crate::roads::network_read::rows;
+use crate::layers::contents::Layer;
+use crate::layers::styles::{self, Shows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -65,7 +65,8 @@ impl Database {
 
 /// Registers the areas as a layer.
 pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    sets::add_layer_of(c, ("junction", "MULTIPOLYGON"), "Areas of junctions", time, bounds).await?;
+    let layer = Layer { table: "junction", geometries: "MULTIPOLYGON", description: "Areas of junctions", bounds };
+    layer.add(c, time).await?;
     styles::add(c, "junction", Shows::Junctions, time).await
 }
 

@@ -10,11 +10,10 @@ use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named;
 use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin, SetKey};
 
+use crate::columns::names::{corridor_no, width_columns};
+use crate::columns::read::{centimetres, line, verdict, word, word_or_none};
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::results::names::{corridor_no, width_columns};
-use crate::results::numbers;
-use crate::roads::network_read::{line, verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -219,7 +218,7 @@ fn map_numbers(row: &SqliteRow) -> Sql<MapNumbers> {
             row.try_get::<i64, _>(0).map_or_else(|_| "an edge".to_owned(), |fid| format!("edge {fid}"))
         })?,
         rsc_mm: row.try_get(5)?,
-        need_width_m: numbers::centimetres(row, 6)?,
+        need_width_m: centimetres(row, 6)?,
         shared: row.try_get(7)?,
     })
 }

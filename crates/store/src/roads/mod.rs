@@ -1,7 +1,6 @@
 //! Tables of the roads: the network, what lies around it, and what was read of the map.
 
 pub(crate) mod areas;
-pub(crate) mod at_time;
 pub(crate) mod backdrop;
 pub(crate) mod facts;
 pub(crate) mod junctions;

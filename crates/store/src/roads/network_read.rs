@@ -3,29 +3,36 @@
 
 use std::ops::Range;
 
-use futures_util::TryStreamExt as _;
 use rustc_hash::FxHashMap;
+use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
-use sqlx::{Row as _, Sqlite};
 
 use crate::network::{Areas, Crossings, Edge, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
 use crate::osm::facts::class_and_link;
 use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
 use crate::osm::{LonLat, StringPool};
-use crate::verdict::Verdict;
-use crate::words::Named;
 
-use crate::error::content;
+use crate::columns::read::{index, range, rows, word};
+use crate::database::Database;
+use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::register::evidence;
-use crate::results::names::verdict_of;
 use crate::roads::areas;
 use crate::roads::restrictions::{self, Restrictions};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
+impl Database {
+    /// Loads the network, which equals the network that was written.
+    pub fn load_network(&mut self) -> Result<Network, StoreError> {
+        // Read first: a change while the network is read is then noticed.
+        self.loaded = Some(self.register_state()?);
+        self.session.run(async |c| read(c).await)
+    }
+}
+
 /// Reads the whole network.
-pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
+async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let sections = rows(c, "SELECT * FROM section ORDER BY section_no", |row| section(row, 1)).await?;
     let mut sets = RuleSets::default();
     let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1, [9, 10], &mut sets)).await?;
@@ -39,7 +46,7 @@ pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let mut expected = 0;
     let edges = rows(c, edges, |row| {
         expected += 1;
-        edge(row, expected, roads.len(), (&mut shapes, &mut sets))
+        edge(row, expected, roads.len(), &mut shapes, &mut sets)
     })
     .await?;
     let narrowings = "SELECT vertex, passage_m FROM narrowing ORDER BY narrowing_no";
@@ -79,19 +86,6 @@ pub(crate) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     Ok(network)
 }
 
-pub(crate) async fn rows<T>(
-    c: &mut SqliteConnection,
-    sql: &'static str,
-    mut read: impl FnMut(&SqliteRow) -> Sql<T>,
-) -> Sql<Vec<T>> {
-    let mut all = Vec::new();
-    let mut stream = sqlx::query::<Sqlite>(sql).fetch(c);
-    while let Some(row) = stream.try_next().await? {
-        all.push(read(&row)?);
-    }
-    Ok(all)
-}
-
 /// Checks that no range points outside its array, because the program indexes arrays by these ranges.
 fn check_ranges(network: &Network) -> Sql<()> {
     let within = |range: &Range<u32>, length: usize| range.start <= range.end && range.end as usize <= length;
@@ -99,41 +93,6 @@ fn check_ranges(network: &Network) -> Sql<()> {
     let length = network.stroke_edges.len();
     let strokes = network.strokes.iter().all(|s| within(&s.approach, length) && within(&s.edges, length));
     if edges && strokes { Ok(()) } else { Err(content("a narrow place or stroke points outside its table")) }
-}
-
-pub(crate) fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
-    Ok(row.try_get(column)?..row.try_get(column + 1)?)
-}
-
-/// The index of a number that counts from 1 in the database. The index must be below `length`.
-pub(crate) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
-    let number: i64 = row.try_get(column)?;
-    let index = number.checked_sub(1).and_then(|index| u32::try_from(index).ok());
-    index
-        .filter(|&index| (index as usize) < length)
-        .ok_or_else(|| content(format!("row {number} is referred to, but missing")))
-}
-
-/// The value of the word in a column.
-pub(crate) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
-    let word: &str = row.try_get(column)?;
-    T::named(word).ok_or_else(|| content(format!("`{word}` is not a word that netcert writes")))
-}
-
-/// The value of the word in a column, or `None` for null.
-pub(crate) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
-    if row.try_get::<Option<&str>, _>(column)?.is_none() { Ok(None) } else { word(row, column).map(Some) }
-}
-
-/// The verdict of the number in a column; `of` names the row in errors.
-pub(crate) fn verdict(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Verdict> {
-    let number: i64 = row.try_get(column)?;
-    verdict_of(number).ok_or_else(|| content(format!("verdict {number} of {}", of())))
-}
-
-/// The positions of the geometry in a column; `of` names the row in errors.
-pub(crate) fn line(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Vec<LonLat>> {
-    blob::decode(row.try_get(column)?).ok_or_else(|| content(format!("the geometry of {}", of())))
 }
 
 fn strip(row: &SqliteRow, column: usize) -> Sql<Option<Strip>> {
@@ -220,7 +179,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
 
 /// Reads an edge and puts its positions at their old place in [`Network::shapes`]. Neighbours and opposite directions may
 /// share positions.
-fn edge(row: &SqliteRow, expected: i64, roads: usize, (shapes, sets): (&mut Vec<LonLat>, &mut RuleSets)) -> Sql<Edge> {
+fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>, sets: &mut RuleSets) -> Sql<Edge> {
     let fid: i64 = row.try_get(0)?;
     if fid != expected {
         return Err(content(format!("edge {expected} of the network is missing")));

@@ -12,7 +12,7 @@ use crate::osm::facts::{BackdropKind, CrossSection};
 use crate::osm::{Backdrop, LonLat};
 use netcert_rows::EdgeMeasure;
 
-use crate::file::part::sorter;
+use crate::file::companions::sorter;
 use netcert_files::sorter::Sorter;
 
 /// A road with its texts. `road` has none of them.

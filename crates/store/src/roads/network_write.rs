@@ -16,7 +16,7 @@ use netcert_rows::Bounds;
 use crate::error::content;
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
-use crate::file::part::sorter;
+use crate::file::companions::sorter;
 use crate::roads::network_rows::{EdgeRow, NetworkRows, RoadRow, StrokeRow};
 use netcert_files::sorter::{Sorted, Sorter};
 
@@ -151,7 +151,7 @@ async fn roads_and_edges(
             current = Some((no, road));
         }
         let (_, road) = current.as_ref().ok_or_else(|| content("a road is missing"))?;
-        let bounds = write_edge(to, &mut bulk, (index, row), (road, &ranges)).await?;
+        let bounds = write_edge(to, &mut bulk, index, row, road, &ranges).await?;
         boxes.push((morton(&bounds), index), &bounds)?;
         written.bounds = Some(written.bounds.map_or(bounds, |all| all.union(bounds)));
     }
@@ -185,12 +185,15 @@ impl Narrowings {
     }
 }
 
-/// Writes the row of an edge, given with its index, and returns the box around it. `bulk` collects rows of the table `edge`.
+/// Writes the row of an edge with this index in the whole network, and returns the box around it. `bulk` collects rows of the table `edge`;
+/// `road` and `ranges` are those of the edge.
 pub(crate) async fn write_edge(
     to: &mut impl Takes,
     bulk: &mut Bulk,
-    (index, row): (u32, EdgeRow),
-    (road, ranges): (&RoadRow, &Ranges),
+    index: u32,
+    row: EdgeRow,
+    road: &RoadRow,
+    ranges: &Ranges,
 ) -> Sql<Bounds> {
     let EdgeRow { edge, mut shape, section, measure, road: road_no, .. } = row;
     if edge.direction == Direction::Backward {

@@ -11,10 +11,10 @@ use crate::osm::facts::class_and_link;
 use crate::words::Named as _;
 use netcert_rows::{MainRoad, SetKey};
 
+use crate::columns::names::{corridor_no, width_columns};
+use crate::columns::read::{line, verdict, word_or_none};
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::results::names::{corridor_no, width_columns};
-use crate::roads::network_read::{line, verdict, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

@@ -6,9 +6,9 @@ use sqlx::sqlite::SqliteConnection;
 use crate::network::{PortionRestriction, Restriction};
 use crate::osm::facts::RestrictionKind;
 
+use crate::columns::read::{index, range, rows};
 use crate::error::content;
 use crate::file::bulk::Bulk;
-use crate::roads::network_read::{index, range, rows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::relative::DRIVABLE_BY;
 
 /// Where one vehicle is known to go: sorted indices into the network's edges and turns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -52,16 +51,5 @@ impl Database {
             return Err(StoreError::NotThere { path: self.session.path.clone(), detail: detail.to_owned() });
         }
         Ok(known)
-    }
-
-    /// The ids of the vehicles that a reference stands for: of [`DRIVABLE_BY`], those that the register knows to go somewhere.
-    ///
-    /// # Errors
-    /// The register knows none ([`StoreError::NotThere`]); the file cannot be read.
-    pub fn reference_ids(&mut self, reference: &str) -> Result<Vec<String>, StoreError> {
-        match reference {
-            DRIVABLE_BY => Ok(self.known_vehicles()?.into_keys().collect()),
-            _ => Ok(vec![reference.to_owned()]),
-        }
     }
 }

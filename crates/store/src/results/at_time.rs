@@ -13,10 +13,10 @@ use rustc_hash::FxHashMap;
 use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row as _};
 
+use crate::columns::names::verdict_no;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::osm::facts::{At, Legal};
-use crate::results::names::verdict_no;
 use crate::roads::network_read::{self, RuleSets};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};

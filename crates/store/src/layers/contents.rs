@@ -1,7 +1,9 @@
-//! The tables without geometry that other programs list. GDAL lists every table of a file unless some are registered as
+//! The layers and the tables without geometry that other programs list. GDAL lists every table of a file unless some are registered as
 //! `attributes`; then it lists only registered tables, and the tables that only netcert reads stay hidden.
 
 use sqlx::sqlite::SqliteConnection;
+
+use netcert_rows::Bounds;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -35,4 +37,40 @@ pub(crate) async fn touch_tables(c: &mut SqliteConnection, time: &str) -> Sql<()
     let sql = "UPDATE gpkg_contents SET last_change = ? WHERE data_type = 'attributes'";
     sqlx::query(sql).bind(time).execute(c).await?;
     Ok(())
+}
+
+/// A table or view that is a layer: it has a column `geom`.
+pub(crate) struct Layer<'a> {
+    /// Name of the table or view, and of the layer.
+    pub(crate) table: &'a str,
+    /// The type of its geometries, in the words of GeoPackage.
+    pub(crate) geometries: &'a str,
+    /// What it shows, for people.
+    pub(crate) description: &'a str,
+    /// The box around it. `None` if it is empty.
+    pub(crate) bounds: Option<Bounds>,
+}
+
+impl Layer<'_> {
+    /// Registers the layer. `time` is the time of its last change.
+    pub(crate) async fn add(&self, c: &mut SqliteConnection, time: &str) -> Sql<()> {
+        let Self { table, geometries, description, bounds } = *self;
+        sqlx::query("INSERT INTO gpkg_contents VALUES (?, 'features', ?, ?, ?, ?, ?, ?, ?, 4326)")
+            .bind(table)
+            .bind(table)
+            .bind(description)
+            .bind(time)
+            .bind(bounds.map(|b| b.west))
+            .bind(bounds.map(|b| b.south))
+            .bind(bounds.map(|b| b.east))
+            .bind(bounds.map(|b| b.north))
+            .execute(&mut *c)
+            .await?;
+        sqlx::query("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, 4326, 0, 0)")
+            .bind(table)
+            .bind(geometries)
+            .execute(c)
+            .await?;
+        Ok(())
+    }
 }

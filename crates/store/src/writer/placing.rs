@@ -1,34 +1,22 @@
-//! How a part is opened, and how it takes the place of the older database when it is complete.
+//! How a database that is complete takes the place of the older one.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 
 use crate::database::Database;
+use crate::database::register_state::RegisterState;
 use crate::error::{StoreError, content};
-use crate::file::part::{Part, with_suffix};
+use crate::file::companions::has_journal;
 use crate::file::session::Session;
-use crate::register::evidence::{Register, RegisterState};
+use crate::file::unfinished::UnfinishedFile;
+use crate::register::evidence::Register;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// How a part is opened.
-pub(crate) fn options(part: &Part) -> SqliteConnectOptions {
-    SqliteConnectOptions::new()
-        .filename(&part.path)
-        // If the program is killed, the part is thrown away, so no journal and no sync are needed before the end.
-        .journal_mode(SqliteJournalMode::Off)
-        .synchronous(SqliteSynchronous::Off)
-        .locking_mode(SqliteLockingMode::Exclusive)
-        .pragma("cache_size", "-65536")
-        .pragma("temp_store", "MEMORY")
-        // Foreign keys are checked once, over the whole file, before it is put in place.
-        .foreign_keys(false)
-}
-
 /// Checks a part that is complete, and puts it in place of the older database.
-pub(crate) fn put_in_place(session: Session, part: Part, older: Option<&Older>) -> Result<(), StoreError> {
+pub(crate) fn put_in_place(session: Session, part: UnfinishedFile, older: Option<&Older>) -> Result<(), StoreError> {
     session.close()?;
     check(&part.path, &part.target)?;
     settle(&part.target)?;
@@ -46,11 +34,6 @@ fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), S
         Ok(now) if now != *before => Err(StoreError::RegisterChanged(target.to_owned())),
         _ => Ok(()),
     }
-}
-
-/// Whether a journal lies beside a database: that of a change in progress, or of a killed one.
-pub(crate) fn has_journal(path: &Path) -> bool {
-    ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists())
 }
 
 /// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does

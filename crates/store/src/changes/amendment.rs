@@ -12,13 +12,13 @@ use crate::osm::LonLat;
 use netcert_roads::turns::{JunctionArea, TurnFacts};
 use netcert_rows::{Bounds, EdgeMeasure};
 
+use crate::changes::renewal::{self, PackedRenewal, SetRenewal, Triggers};
+use crate::columns::read::rows;
 use crate::error::content;
 use crate::file::blob;
 use crate::file::bulk::Bulk;
-use crate::register::renewal::{self, PackedRenewal, SetRenewal, Triggers};
 use crate::results::turns::{self, Record};
 use crate::roads::junctions;
-use crate::roads::network_read::rows;
 use crate::roads::network_rows::{EdgeRow, NetworkRow, RoadRow, StrokeRow, edge_rows, stroke_rows};
 use crate::roads::network_write::{Narrowings, Ranges, Roads, write_edge, write_strokes};
 use crate::roads::restrictions;
@@ -179,7 +179,7 @@ async fn edges(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Optio
         for sql in ["DELETE FROM edge WHERE fid = ?", "DELETE FROM rtree_edge_geom WHERE id = ?"] {
             sqlx::query(sql).bind(fid).execute(&mut *c).await?;
         }
-        let bounds = write_edge(c, &mut bulk, (index, row), (&road, &ranges)).await?;
+        let bounds = write_edge(c, &mut bulk, index, row, &road, &ranges).await?;
         boxes.add(fid);
         for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
             boxes.add(side);

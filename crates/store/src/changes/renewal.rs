@@ -7,23 +7,21 @@ use sqlx::{AssertSqlSafe, Row as _};
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
-use crate::verdict::Verdict;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 
+use crate::columns::read::rows;
+use crate::columns::set_no::SetNo;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::bulk::Bulk;
 use crate::provenance::records::{self, Run};
 use crate::register::evidence::{self, Register};
-use crate::results::carry_over::PAGE_ROWS;
 use crate::results::compact::CompactCertificate;
-use crate::results::names::{corridor_no, verdict_of};
 use crate::results::plans;
 use crate::results::sets;
 use crate::results::turns;
 use crate::roads::junctions;
-use crate::roads::network_read::rows;
 use crate::roads::network_write::add_widths;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -88,59 +86,6 @@ impl Database {
             done.and(ended.map(|_| ()))
         })
     }
-
-    /// The verdicts of a set, by edge.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn edge_verdicts(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
-        self.verdicts("certificate_compact", vehicle, policy)
-    }
-
-    /// The verdicts of a vehicle's turns, by turn. Empty if its turns are not certified.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn turn_verdicts(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
-        self.verdicts("turn_certificate_compact", vehicle, policy)
-    }
-
-    fn verdicts(&mut self, table: &'static str, vehicle: &str, policy: Policy) -> Result<Vec<Verdict>, StoreError> {
-        // A thousand rows come as one text: each row that sqlx hands over by itself costs a microsecond or more.
-        let pages: Vec<(i64, String)> = self.session.run(async |c| {
-            let sql = format!(
-                "SELECT max(fid), json_group_array(verdict_no ORDER BY fid) FROM {table} WHERE corridor_no = ? \
-                 AND vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
-                 GROUP BY fid / {PAGE_ROWS} ORDER BY fid / {PAGE_ROWS}"
-            );
-            sqlx::query_as(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle).fetch_all(c).await
-        })?;
-        let mut verdicts = Vec::with_capacity(pages.len() * PAGE_ROWS);
-        let damaged = |row: usize| StoreError::sql(&self.session.path, content(format!("row {row} of {table}")));
-        for (last, page) in &pages {
-            let first = verdicts.len() + 1;
-            let numbers: Vec<i64> = serde_json::from_str(page).map_err(|_| damaged(first))?;
-            for (row, &number) in (first..).zip(&numbers) {
-                verdicts.push(verdict_of(number).ok_or_else(|| damaged(row))?);
-            }
-            // Rows have distinct numbers, so none is missing if the last one has the number of all.
-            if *last != verdicts.len() as i64 {
-                return Err(damaged(first));
-            }
-        }
-        Ok(verdicts)
-    }
-
-    /// Whether the database has the turns of its network.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn keeps_turns(&mut self) -> Result<bool, StoreError> {
-        let layers: i64 = self.session.run(async |c| {
-            sqlx::query_scalar("SELECT count(*) FROM gpkg_contents WHERE table_name = 'turn'").fetch_one(c).await
-        })?;
-        Ok(layers > 0)
-    }
 }
 
 /// A set's rows, ready to be written.
@@ -188,19 +133,13 @@ pub(crate) async fn replace_sets(
     for (set, packed) in sets.iter_mut().zip(packed) {
         let number = sqlx::query_scalar("SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?");
         let vehicle_no: u32 = number.bind(&set.vehicle).fetch_one(&mut *c).await?;
-        replace(c, (vehicle_no, corridor_no(set.policy)), set, packed).await?;
+        replace(c, SetNo { vehicle_no, policy: set.policy }, set, packed).await?;
     }
     Ok(())
 }
 
 /// Replaces some certificates of a set, with their plans.
-async fn replace(
-    c: &mut SqliteConnection,
-    (vehicle_no, corridor): (u32, u8),
-    set: &mut SetRenewal,
-    packed: &PackedRenewal,
-) -> Sql<()> {
-    let of = (vehicle_no, corridor);
+async fn replace(c: &mut SqliteConnection, of: SetNo, set: &mut SetRenewal, packed: &PackedRenewal) -> Sql<()> {
     remove(c, ["certificate_compact", "plan"], of, &packed.edges).await?;
     sets::insert_rows(c, of, packed.edges.iter().copied().map(Ok)).await?;
     plans::insert(c, plans::STROKES, of, plans::sorted(&mut set.plans)).await?;
@@ -212,7 +151,7 @@ async fn replace(
 async fn remove(
     c: &mut SqliteConnection,
     tables: [&'static str; 2],
-    (vehicle_no, corridor): (u32, u8),
+    set: SetNo,
     rows: &[CompactCertificate],
 ) -> Sql<()> {
     for table in tables {
@@ -220,7 +159,7 @@ async fn remove(
             format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ? AND fid = ?").into();
         for row in rows {
             let delete = sqlx::query(AssertSqlSafe(std::sync::Arc::clone(&sql)));
-            delete.bind(vehicle_no).bind(corridor).bind(row.fid).execute(&mut *c).await?;
+            delete.bind(set.vehicle_no).bind(set.corridor_no()).bind(row.fid).execute(&mut *c).await?;
         }
     }
     Ok(())

@@ -2,21 +2,18 @@
 //! the disk, it is renamed over the target. If the program is killed, the old file is unchanged and the next run empties the
 //! part.
 
-use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, Seek as _};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
 
 use crate::error::StoreError;
+use crate::file::companions::{remove_companions, with_suffix};
 use netcert_files::output_lock::{self, OutputLock};
-use netcert_files::scratch::Scratch;
-use netcert_files::sorter::Sorter;
 
 /// A locked `.part` file, empty at first. Dropping it removes the file unless the file became the target.
-pub(crate) struct Part {
+pub(crate) struct UnfinishedFile {
     pub(crate) target: PathBuf,
     pub(crate) path: PathBuf,
     /// Whether a killed run had left a part behind, which was emptied.
@@ -25,29 +22,27 @@ pub(crate) struct Part {
     placed: bool,
 }
 
-/// `path` with `suffix` after its whole name.
-pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
-    let mut name: OsString = path.as_os_str().to_owned();
-    name.push(suffix);
-    name.into()
-}
-
-/// A sorter with a temporary file at `path` with `suffix` after its name.
-pub(crate) fn sorter<K, T>(path: &Path, suffix: &str) -> io::Result<Sorter<K, T>>
-where
-    K: Ord + Copy + Serialize + DeserializeOwned,
-    T: Serialize + DeserializeOwned,
-{
-    Ok(Sorter::new(Scratch::create(with_suffix(path, suffix))?))
-}
-
-impl Part {
+impl UnfinishedFile {
     /// Creates and locks the part of `target`.
     pub(crate) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
         let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
         remove_companions(&path)?;
         Ok(Self { target: target.to_owned(), path, leftover: lock.leftover, lock, placed: false })
+    }
+
+    /// How the file is opened to be written.
+    pub(crate) fn options(&self) -> SqliteConnectOptions {
+        SqliteConnectOptions::new()
+            .filename(&self.path)
+            // If the program is killed, the file is thrown away, so no journal and no sync are needed before the end.
+            .journal_mode(SqliteJournalMode::Off)
+            .synchronous(SqliteSynchronous::Off)
+            .locking_mode(SqliteLockingMode::Exclusive)
+            .pragma("cache_size", "-65536")
+            .pragma("temp_store", "MEMORY")
+            // Foreign keys are checked once, over the whole file, before it is put in place.
+            .foreign_keys(false)
     }
 
     /// Fills the part with the bytes of the target.
@@ -74,24 +69,13 @@ impl Part {
     }
 }
 
-impl Drop for Part {
+impl Drop for UnfinishedFile {
     fn drop(&mut self) {
         if !self.placed {
             // An error is ignored, because the next run empties the file.
             let _ = std::fs::remove_file(&self.path);
         }
     }
-}
-
-fn remove_companions(path: &Path) -> Result<(), StoreError> {
-    for suffix in ["-journal", "-wal", "-shm"] {
-        let companion = with_suffix(path, suffix);
-        match std::fs::remove_file(&companion) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(StoreError::io(&companion, e)),
-            _ => {}
-        }
-    }
-    Ok(())
 }
 
 /// Syncs the folder of `file`, so that the rename is on the disk, too.
