@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::path::Path;
 
-use super::RunError;
+use super::error::RunError;
 use crate::certify::{Job, Touched, TurnJob, certify_some_turns, certify_strokes};
 use crate::network::Network;
 use crate::reporter::Reporter;

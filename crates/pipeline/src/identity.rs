@@ -5,7 +5,7 @@ pub(super) use crate::program::PROGRAM;
 use crate::settings::Settings;
 use crate::store::StoreError;
 
-use super::RunError;
+use super::error::RunError;
 
 /// A hash that grows with each part that is added.
 pub(super) struct Identity(blake3::Hasher);

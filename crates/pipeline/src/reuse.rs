@@ -18,12 +18,15 @@ use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{self, CertifiedSet, Database, StoredPlans};
 use crate::turns::{JunctionArea, TurnFacts, turn_facts};
-use crate::verdict::Verdict;
+use crate::verdict::{UnknownReason, Verdict};
 
 use super::again::StoredSet;
+use super::error::RunError;
 use super::identity;
-use super::making::Making;
-use super::{RunError, StageSummary, Summary, read_roads, record};
+use super::roads::{Portions, read_roads};
+use super::source::MapSource;
+use super::summary::{StageSummary, Summary};
+use super::vehicle_record::record;
 
 /// The certificates of one vehicle.
 struct Set {
@@ -150,6 +153,19 @@ impl<'a> Stored<'a> {
 /// and lacks its measures.
 pub(super) fn is_undone(verdict: Verdict, measure: &EdgeMeasure) -> bool {
     verdict.claims_nothing() || (matches!(verdict, Verdict::Forbidden(_)) && measure.centreline_deviation_m.is_none())
+}
+
+/// Why an edge that is taken over has no corridor, as far as its verdicts tell.
+pub(super) fn without_corridor(
+    measure: EdgeMeasure,
+    mut verdicts: impl Iterator<Item = Verdict>,
+) -> Option<UnknownReason> {
+    let reason = |verdict| match verdict {
+        Verdict::Unknown(reason @ (UnknownReason::Geometry | UnknownReason::Width)) => Some(reason),
+        _ => None,
+    };
+    let missing = measure == EdgeMeasure::default();
+    verdicts.find_map(reason).or(missing.then_some(UnknownReason::Geometry))
 }
 
 impl Earlier {
@@ -279,9 +295,8 @@ pub(super) fn same_turn(differences: &Differences, old: &TurnFacts, new: &TurnFa
 
 /// The network of an extract with changes.
 fn built(extract: &Path, changes: &Changes, countries: &Countries) -> Result<Portion, RunError> {
-    let source = (&[extract][..], changes);
-    let whole = (u64::MAX, true);
-    let (roads, _) = read_roads(source, countries, whole, &mut |_| Ok(()), &Silent, &mut Summary::default())?;
+    let source = MapSource { inputs: &[extract], changes };
+    let (roads, _) = read_roads(source, countries, Portions::Whole, &mut |_| Ok(()), &Silent, &mut Summary::default())?;
     Ok(roads.into_whole())
 }
 
@@ -295,13 +310,14 @@ fn edges_of(network: &Network, stroke: u32) -> &[u32] {
 pub(super) fn differs(
     database: &mut Database,
     models: &[Model],
-    making: &Making<'_>,
+    countries: &Countries,
+    settings: &Settings,
 ) -> Result<Option<String>, RunError> {
     let runs = database.runs()?;
     if let Some((run, _)) = runs.iter().find(|(run, _)| run.netcert_version != identity::PROGRAM) {
         return Ok(Some(format!("the older database is by netcert {}", run.netcert_version)));
     }
-    let rules = identity::of_rules(making.countries);
+    let rules = identity::of_rules(countries);
     let known = |run: &crate::store::Run| {
         let parameters: serde_json::Value = serde_json::from_str(&run.parameters).ok()?;
         Some(parameters.get(identity::ROAD_RULES)?.as_str()? == rules)
@@ -315,9 +331,9 @@ pub(super) fn differs(
         let id = &model.vehicle.id;
         let definition = record(&model.vehicle)?.definition;
         let vehicle = records.iter().any(|record| record.id == *id && record.definition == definition);
-        let mut of_vehicle = sets.iter().filter(|set| set.vehicle_id == *id && set.policy == making.settings.policy);
-        let settings = of_vehicle.next().map(CertifiedSet::settings).transpose()?;
-        if !vehicle || settings.as_ref() != Some(making.settings) {
+        let mut of_vehicle = sets.iter().filter(|set| set.vehicle_id == *id && set.policy == settings.policy);
+        let of_set = of_vehicle.next().map(CertifiedSet::settings).transpose()?;
+        if !vehicle || of_set.as_ref() != Some(settings) {
             return Ok(Some(format!("{id} is not certified in the older database with the same settings")));
         }
     }

@@ -1,14 +1,30 @@
 //! The roads of an extract: as one network, or as portions of it that are built one after the other.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
 
+use super::error::RunError;
+use super::source::{self, MapSource, Origin};
+use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::network::{Area, Division, Ground, Network, Portion, StrokeOptions};
+use crate::osm::changes::Changes;
 use crate::osm::facts::{Countries, CrossSection, Place, WayFacts, cross_sections};
-use crate::osm::{Extract, LonLat};
+use crate::osm::{Backdrop, Extract, LonLat};
+use crate::reporter::Reporter;
 
 /// Directed edges of one portion. With what surrounds it and its turns, a portion takes some 2 kB for each of them.
 pub const EDGES_AT_ONCE: u64 = 150_000;
+
+/// Into which portions roads are divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Portions {
+    /// One portion is the whole network, whatever its size.
+    Whole,
+    /// Each has at most so many directed edges.
+    OfAtMost(u64),
+}
 
 type Places<'c> = Box<dyn Fn(LonLat) -> Place + Sync + 'c>;
 type Sections<'c> = Box<dyn Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
@@ -23,20 +39,24 @@ pub(super) struct Roads<'c> {
 }
 
 impl<'c> Roads<'c> {
-    /// The roads of an extract, in portions of at most `edges_at_once` directed edges. `whole`: as one network, whatever its size.
-    pub(super) fn new(extract: Extract, countries: &'c Countries, edges_at_once: u64, whole: bool) -> Self {
+    /// The roads of an extract, in portions.
+    pub(super) fn new(extract: Extract, countries: &'c Countries, portions: Portions) -> Self {
         let rules = countries.rules();
         let places: Places<'c> = Box::new(|position| countries.place(position));
         let sections: Sections<'c> =
             Box::new(move |facts, place, ring_radius_m| cross_sections(facts, place, ring_radius_m, rules));
         let ground = Ground::new(extract, places, sections, StrokeOptions::default());
-        // A way has about two references for each directed edge.
-        if whole || ground.references() as u64 <= 2 * edges_at_once {
-            let (portion, account) = ground.whole();
-            return Self { divided: None, current: Some((0, portion)), account: account.rows() };
+        match portions {
+            // A way has about two references for each directed edge.
+            Portions::OfAtMost(edges) if ground.references() as u64 > 2 * edges => {
+                let division = ground.divide(edges);
+                Self { divided: Some(Box::new((ground, division))), current: None, account: Vec::new() }
+            }
+            Portions::OfAtMost(_) | Portions::Whole => {
+                let (portion, account) = ground.whole();
+                Self { divided: None, current: Some((0, portion)), account: account.rows() }
+            }
         }
-        let division = ground.divide(edges_at_once);
-        Self { divided: Some(Box::new((ground, division))), current: None, account: Vec::new() }
     }
 
     /// The network, if it is whole.
@@ -112,4 +132,39 @@ impl<'c> Roads<'c> {
         let whole = || self.current.as_ref().map_or_else(Vec::new, |(_, portion)| portion.network.areas.all().to_vec());
         self.divided.as_ref().map_or_else(whole, |divided| divided.0.kept_areas(&divided.1))
     }
+}
+
+/// Stages one and two: reads the extract and builds the network.
+///
+/// # Errors
+/// The file is damaged or has no roads.
+pub fn read_network(
+    input: &Path,
+    countries: &Countries,
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
+) -> Result<(Network, String), RunError> {
+    let source = MapSource { inputs: &[input], changes: &Changes::default() };
+    let (roads, origin) = read_roads(source, countries, Portions::Whole, &mut |_| Ok(()), reporter, summary)?;
+    summary.account.extend(roads.account());
+    Ok((roads.into_whole().network, origin.blake3))
+}
+
+/// Reads a source as it is after changes. `behind` takes what a map shows behind its roads.
+pub(super) fn read_roads<'c>(
+    source: MapSource<'_>,
+    countries: &'c Countries,
+    portions: Portions,
+    behind: &mut dyn FnMut(&[Backdrop]) -> Result<(), RunError>,
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
+) -> Result<(Roads<'c>, Origin), RunError> {
+    let (mut extract, origin) = source::read(source, reporter, summary)?;
+    behind(&std::mem::take(&mut extract.backdrop))?;
+    let clock = Instant::now();
+    reporter.begin("network", 0);
+    let roads = Roads::new(extract, countries, portions);
+    reporter.end();
+    summary.stage("network", clock, u64::from(roads.edges()), "directed edges");
+    Ok((roads, origin))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::RunError;
+use super::error::RunError;
 use crate::vehicle::{Catalogue, Regions, Vehicle};
 
 /// The least share of the roads with which a country counts as one of the extract's countries.

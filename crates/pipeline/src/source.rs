@@ -1,10 +1,10 @@
 //! Reads a source, whatever it is: an OpenStreetMap extract, with changes or without, or files of Overture.
 
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
-use super::making::locked;
-use super::{RunError, Summary};
+use super::error::RunError;
+use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::osm::changes::Changes;
 use crate::osm::pbf::{HeaderInfo, ReadError};
@@ -27,8 +27,17 @@ pub(super) struct Origin {
     pub(super) segments: Option<Vec<SegmentRow>>,
 }
 
-/// A source that was read.
-struct Source {
+/// Where a map comes from.
+#[derive(Clone, Copy)]
+pub(super) struct MapSource<'a> {
+    /// An extract; or files or folders of Overture.
+    pub(super) inputs: &'a [&'a Path],
+    /// What is applied to the extract.
+    pub(super) changes: &'a Changes,
+}
+
+/// What was read of a source.
+struct Content {
     extract: Extract,
     account: Vec<AccountRow>,
     /// Number of ways or segments, and their name.
@@ -40,13 +49,14 @@ struct Source {
 
 /// Reads a source and fills the first stage of the summary.
 pub(super) fn read(
-    (inputs, changes): (&[&Path], &Changes),
+    source: MapSource<'_>,
     reporter: &dyn Reporter,
     summary: &mut Summary,
 ) -> Result<(Extract, Origin), RunError> {
     let clock = std::time::Instant::now();
-    let Source { extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
-        Some(source) => source,
+    let MapSource { inputs, changes } = source;
+    let Content { extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
+        Some(content) => content,
         None => of_osm(inputs, changes, reporter)?,
     };
     summary.account.extend(account);
@@ -60,7 +70,7 @@ pub(super) fn read(
     Ok((extract, origin))
 }
 
-fn of_osm(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Result<Source, RunError> {
+fn of_osm(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Result<Content, RunError> {
     let [input] = inputs else {
         let names = inputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
         return Err(RunError::Misfit(format!(
@@ -69,7 +79,7 @@ fn of_osm(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Resul
     };
     let extract = read_reporting(input, changes, reporter)?;
     let read = &extract.account;
-    Ok(Source {
+    Ok(Content {
         account: read.rows(),
         read: (read.ways_read, "ways"),
         left_out: read.ways_left_out.iter().map(|(why, n)| (*why, *n)).collect(),
@@ -81,7 +91,7 @@ fn of_osm(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Resul
 fn read_reporting(input: &Path, changes: &Changes, reporter: &dyn Reporter) -> Result<Extract, ReadError> {
     let begun = Mutex::new(None);
     let extract = osm::pbf::read_changed_extract(input, changes, &|p| {
-        let mut begun = locked(&begun);
+        let mut begun = begun.lock().unwrap_or_else(PoisonError::into_inner);
         if *begun != Some(p.stage) {
             reporter.begin(p.stage.name(), p.total);
             *begun = Some(p.stage);
@@ -93,13 +103,13 @@ fn read_reporting(input: &Path, changes: &Changes, reporter: &dyn Reporter) -> R
 }
 
 #[cfg(not(feature = "overture"))]
-fn of_overture(_: &[&Path], _: &Changes, _: &dyn Reporter) -> Result<Option<Source>, RunError> {
+fn of_overture(_: &[&Path], _: &Changes, _: &dyn Reporter) -> Result<Option<Content>, RunError> {
     Ok(None)
 }
 
 /// The source if one of the inputs is Overture's.
 #[cfg(feature = "overture")]
-fn of_overture(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Result<Option<Source>, RunError> {
+fn of_overture(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Result<Option<Content>, RunError> {
     if !inputs.iter().any(|input| crate::overture::is_source(input)) {
         return Ok(None);
     }
@@ -114,7 +124,7 @@ fn of_overture(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> 
     });
     reporter.end();
     let crate::overture::Read { extract, account, segments } = read?;
-    Ok(Some(Source {
+    Ok(Some(Content {
         account: account.rows(),
         read: (account.segments_read(), "segments"),
         left_out: account.segments_left_out().collect(),
@@ -136,4 +146,9 @@ pub(super) fn no_changes(what: &Path) -> String {
 pub(super) fn name(inputs: &[&Path]) -> String {
     let name = |path: &&Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     inputs.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// Seconds since 1970 as a time stamp, such as `2026-11-21T08:00:00Z`.
+pub(super) fn utc(seconds: i64) -> Option<String> {
+    jiff::Timestamp::from_second(seconds).ok().map(|t| t.to_string())
 }

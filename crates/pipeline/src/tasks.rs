@@ -10,7 +10,11 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{RunError, Summary, identity, read_roads};
+use super::error::RunError;
+use super::identity;
+use super::roads::{Portions, read_roads};
+use super::source::MapSource;
+use super::summary::Summary;
 use crate::certify::{Job as StrokeJob, TurnJob, by_cell, make_strokes, make_turns};
 use crate::network::{Cell, Portion};
 use crate::osm::changes::Changes;
@@ -70,9 +74,10 @@ pub fn divide<E: From<RunError>>(
     reporter: &dyn Reporter,
     mut sink: impl FnMut(Task) -> Result<(), E>,
 ) -> Result<Divided, E> {
-    let from = (&[input][..], &Changes::default());
+    let source = MapSource { inputs: &[input], changes: &Changes::default() };
+    let portions = Portions::OfAtMost(edges_at_once);
     let (mut roads, origin) =
-        read_roads(from, countries, (edges_at_once, false), &mut |_| Ok(()), reporter, &mut Summary::default())?;
+        read_roads(source, countries, portions, &mut |_| Ok(()), reporter, &mut Summary::default())?;
     let edges = roads.edges();
     reporter.begin("tasks", u64::from(edges));
     let mut done = 0;

@@ -18,9 +18,12 @@
 //! | `turning` | turns that are made when a route needs them |
 //! | `assemble`, `blend` | one corridor from pieces |
 //! | `whole` | the certificate of a whole way, and where it fails |
+//! | `route` | a certified route, and its parts |
+//! | `title` | titles and places of edges, turns and passages |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route, and on which way |
-//! | `conditions` | a route that is certified if widths and radii are as it says |
+//! | `conditions` | what has to hold on site so that a way is certified |
+//! | `conditional_search` | the way with the fewest and smallest conditions |
 //! | `beside` | the road beside a place, and why it may not be used |
 //! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
@@ -45,6 +48,7 @@ mod bans;
 mod beside;
 mod best;
 mod blend;
+mod conditional_search;
 mod conditions;
 mod drive;
 mod driver;
@@ -58,34 +62,34 @@ mod reach;
 mod relative;
 mod report;
 mod roads;
+mod route;
 mod search;
 mod snap;
 mod speeds;
 mod stored;
 mod survey;
 mod through;
+mod title;
 mod turning;
 mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
 pub use beside::Beside;
-pub use conditions::{
-    Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson,
-};
+pub use conditional_search::Hopeless;
+pub use conditions::{Condition, ConditionAt, Conditional, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson};
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
 pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
-pub use plan::{Answer, Planner, Question, Route, Unanswered};
+pub use plan::{Answer, Planner, Question, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
-pub use report::{
-    CONDITIONAL, LimitedStretch, PartResult, condition_members, geojson, json, obstacle_members, place, title,
-};
+pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members};
 pub use roads::Roads;
+pub use route::{LimitedStretch, PartResult, Route};
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper, foot};
 pub use speeds::{Measure, Speeds, SpeedsError};
@@ -93,4 +97,5 @@ pub use stored::NoDriver;
 pub use survey::{
     Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
 };
+pub use title::{place, title};
 pub use turning::MadeTurns;

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::assemble::{AssemblyError, PartKind, RoutePath, Way};
+use super::assemble::{AssemblyError, PartKind, Way};
 use super::conditions::{Conditional, Fitter};
 use super::drive::{Drive, Join};
 use super::driver::Driver;
@@ -15,13 +15,13 @@ use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, BlockedWay, Obstacle, Refutation};
 use super::pieces::Turns;
 use super::roads::Roads;
+use super::route::Route;
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use super::turning::MadeTurns;
 use super::whole::{Certified, Whole};
 use crate::network::{MovementKind, Network};
-use crate::stet::Certificate;
 use crate::stop::{Stop, Stopped};
 
 /// The greatest share of its length that an alternative may have in common with an earlier route.
@@ -42,29 +42,6 @@ pub struct Question {
     pub alternatives: usize,
     /// Number of whole routes that may fail to certify.
     pub tries: usize,
-}
-
-/// A certified route.
-#[derive(Debug, Clone)]
-pub struct Route {
-    /// The edges.
-    pub drive: Drive,
-    /// The share of the first edge before the route's beginning, 0..=1.
-    pub start: f64,
-    /// The share of the last edge up to the route's end, 0..=1.
-    pub end: f64,
-    /// The cost in the planner's measure, milliseconds or millimetres.
-    pub cost: u64,
-    /// The time by the table of speeds, seconds.
-    pub time_s: f64,
-    /// The length along the corridor, metres.
-    pub length_m: f64,
-    /// Length of the vehicle when straight, metres.
-    pub vehicle_length_m: f64,
-    /// The whole corridor.
-    pub path: RoutePath,
-    /// The certificate of the whole corridor. It is safe.
-    pub certificate: Certificate,
 }
 
 /// The answer.

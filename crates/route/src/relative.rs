@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 
 use super::assemble::{PartKind, RoutePath};
 use super::driver::Driver;
-use super::plan::{Answer, Route};
+use super::plan::Answer;
+use super::route::Route;
 use crate::rows::{Relative, Standing};
 use crate::stet::{self, Model, SpanResult};
 use crate::stop::{Stop, Stopped};

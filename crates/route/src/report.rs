@@ -1,159 +1,23 @@
-//! Writes answers as JSON and GeoJSON, with the RSC of each part of a route.
-
-use std::ops::Range;
+//! Writes answers as JSON and GeoJSON.
 
 use serde_json::{Value, json};
 
 use super::assemble::{PartKind, passes_over};
 use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
-use super::plan::{Answer, Route};
+use super::plan::Answer;
+use super::route::{LimitedStretch, PartResult, Route};
+use super::title::{place, title};
 use crate::corridor::FrameError;
-use crate::network::{Edge, Network, PassageKind, destination_tag};
-use crate::osm::facts::{At, WidthSource};
+use crate::network::{Network, PassageKind};
+use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
-use crate::stet::{Model, known_m};
+use crate::stet::Model;
 use crate::vehicle::Vehicle;
-use crate::verdict::{UnknownReason, Verdict};
 use crate::words::{Named, verdict_words};
 
 /// The verdict of a route that is certified only under conditions. It is no verdict of a certificate by itself.
 pub const CONDITIONAL: &str = "conditional";
-
-/// A stretch of a route with its least leeway.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PartResult {
-    /// The kind of part.
-    pub kind: PartKind,
-    /// Beginning of the part, metres from the route's beginning.
-    pub from_m: f64,
-    /// End of the part, metres from the route's beginning.
-    pub to_m: f64,
-    /// The least leeway of any body on the part, metres, after all bounds are deducted, with at most the tracking tolerance of
-    /// the whole route's certificate. It is never below the whole route's RSC. `None` if no body passes the part.
-    pub rsc_m: Option<f64>,
-}
-
-/// A stretch of a route on a road that is not open to every journey at any time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitedStretch {
-    /// The road.
-    pub title: String,
-    /// The tag that says so.
-    pub tag: String,
-    /// Beginning, metres from the route's beginning.
-    pub from_m: f64,
-    /// End, metres from the route's beginning.
-    pub to_m: f64,
-}
-
-impl Route {
-    /// The parts in driving order.
-    #[must_use]
-    pub fn parts(&self) -> Vec<PartResult> {
-        let spacing_m = self.path.corridor.spacing_m;
-        let certificate = &self.certificate;
-        let part = |part: &super::assemble::Part| {
-            let stations = self.noted(&part.stations);
-            let own = |column: &[f64]| column.get(stations.clone()).unwrap_or_default().to_vec();
-            let both = own(&certificate.left_m).into_iter().chain(own(&certificate.right_m));
-            let least = both.filter_map(known_m).min_by(f64::total_cmp);
-            PartResult {
-                kind: part.kind,
-                from_m: part.stations.start as f64 * spacing_m,
-                to_m: part.stations.end.saturating_sub(1) as f64 * spacing_m,
-                rsc_m: least.map(|least| certificate.result.rsc_m.map_or(least, |rsc_m| least.max(rsc_m))),
-            }
-        };
-        self.path.parts.iter().map(part).collect()
-    }
-
-    /// The stations at which the certificate notes leeways of a part. In areas it notes the least leeway of a vehicle's place at one
-    /// station under the vehicle, which may belong to the part beside. Feet are at most twice the vehicle's length apart.
-    fn noted(&self, part: &Range<usize>) -> Range<usize> {
-        let corridor = &self.path.corridor;
-        let near = (2.0 * self.vehicle_length_m / corridor.spacing_m).ceil() as usize;
-        let wider = part.start.saturating_sub(near)..(part.end + near).min(corridor.len());
-        let meets = |heads: &Range<usize>| heads.start < wider.end && heads.end > wider.start;
-        if corridor.areas.iter().any(|span| meets(&span.heads)) { wider } else { part.clone() }
-    }
-
-    /// The stretches on roads that are open to a destination only ([`destination_tag`]).
-    #[must_use]
-    pub fn destination_only(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {
-        self.stretches(network, |edge| destination_tag(network, edge, vehicle))
-    }
-
-    /// The stretches on roads that are closed to the vehicle at some times. A route has them only if it was asked for a time.
-    #[must_use]
-    pub fn only_at_times(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {
-        self.stretches(network, |edge| {
-            let judged = network.legal(edge).judge(vehicle, At::Always);
-            judged.rule.filter(|_| judged.verdict == Some(Verdict::Unknown(UnknownReason::Time)))
-        })
-    }
-
-    /// The stretches on edges that have a tag of this kind.
-    fn stretches(&self, network: &Network, tag_of: impl Fn(&Edge) -> Option<String>) -> Vec<LimitedStretch> {
-        let spacing_m = self.path.corridor.spacing_m;
-        let mut stretches: Vec<LimitedStretch> = Vec::new();
-        for part in &self.path.parts {
-            let PartKind::Edge(no) = part.kind else { continue };
-            let Some(edge) = network.edges.get(no as usize) else { continue };
-            let Some(tag) = tag_of(edge) else { continue };
-            let from_m = part.stations.start as f64 * spacing_m;
-            let to_m = part.stations.end.saturating_sub(1) as f64 * spacing_m;
-            let title = network.title(edge);
-            match stretches.last_mut() {
-                Some(last) if last.title == title && last.tag == tag && from_m - last.to_m <= spacing_m => {
-                    last.to_m = to_m;
-                }
-                _ => stretches.push(LimitedStretch { title, tag, from_m, to_m }),
-            }
-        }
-        stretches
-    }
-
-    /// The part with the least leeway of the whole route.
-    #[must_use]
-    pub fn limiting(&self) -> Option<PartKind> {
-        let station = self.certificate.result.limiting.station;
-        self.path.parts.iter().find(|part| part.stations.contains(&station)).map(|part| part.kind)
-    }
-
-    /// The place of the least leeway, metres from the route's beginning.
-    #[must_use]
-    pub fn limiting_m(&self) -> f64 {
-        self.certificate.result.limiting.station as f64 * self.path.corridor.spacing_m
-    }
-}
-
-/// The title of an edge, turn or passage, such as `A87 Great Inland Highway`, `Main Street into High Street` or `Main Street over
-/// the roundabout into High Street`.
-#[must_use]
-pub fn title(network: &Network, at: PartKind) -> String {
-    let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| network.title(edge));
-    match at {
-        PartKind::Edge(edge) => of(edge),
-        PartKind::Turn { from, to } if passes_over(network, at) == Some(PassageKind::Roundabout) => {
-            format!("{} over the roundabout into {}", of(from), of(to))
-        }
-        PartKind::Turn { from, to } => format!("{} into {}", of(from), of(to)),
-    }
-}
-
-/// Longitude and latitude of an edge's middle vertex, or of the node where a turn or passage begins, degrees.
-#[must_use]
-pub fn place(network: &Network, at: PartKind) -> Option<[f64; 2]> {
-    let (edge, last) = match at {
-        PartKind::Edge(edge) => (edge, false),
-        PartKind::Turn { from, .. } => (from, true),
-    };
-    let line: Vec<_> = network.positions(network.edges.get(edge as usize)?).collect();
-    let position = if last { line.last()? } else { line.get(line.len() / 2)? };
-    let (lon, lat) = position.degrees();
-    Some([lon, lat])
-}
 
 fn ids(network: &Network, at: PartKind) -> Value {
     let id = |edge: u32| network.edges.get(edge as usize).map(|edge| edge.id);

@@ -12,7 +12,8 @@ use serde_json::json;
 pub(super) use carried::carried_over;
 
 use super::again::{Again, MadeAgain, StoredSet, VerdictChanges};
-use super::{RunError, Summary};
+use super::error::RunError;
+use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::Touched;
 use crate::network::Network;

@@ -14,10 +14,13 @@ use crate::store::{Database, MapChanges, Run, StoreError};
 use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
-use super::making::{Made, Making, Whom};
+use super::error::RunError;
+use super::new_database::{Made, NewDatabase, Whom};
+use super::replacement::{Certify, certify};
 use super::reuse::Older;
-use super::source;
-use super::{Certify, EDGES_AT_ONCE, RunError, Summary, certify, utc};
+use super::roads::EDGES_AT_ONCE;
+use super::source::{self, utc};
+use super::summary::Summary;
 
 /// Where newer data come from.
 #[derive(Debug, Clone)]
@@ -96,7 +99,7 @@ pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summar
     };
     // The network of a database with measurements is not that of its extract alone.
     let made_from = made_from.filter(|_| old.register().is_ok_and(|register| register.entries.is_empty()));
-    make(ask, old, (input, changes), made_from, reporter).map(Some)
+    make(ask, old, input, changes, made_from, reporter).map(Some)
 }
 
 /// The header of the extract that the database was made from. Refuses any other extract.
@@ -135,7 +138,8 @@ fn are_newer(changes: &Changes, header: &HeaderInfo, extract: &Path) -> Result<(
 fn make(
     ask: &Update<'_>,
     mut old: Database,
-    (input, changes): (&Path, MapChanges),
+    input: &Path,
+    changes: MapChanges,
     made_from: Option<(PathBuf, Changes)>,
     reporter: &dyn Reporter,
 ) -> Result<Summary, RunError> {
@@ -156,7 +160,7 @@ fn make(
         Ok::<Vehicle, RunError>(Vehicle::from_json(&record.ok_or_else(missing)?.definition)?)
     };
     let models = own.iter().map(|id| Ok(Model::new(&vehicle(id)?)?)).collect::<Result<Vec<_>, RunError>>()?;
-    let making = Making {
+    let database = NewDatabase {
         command: "update",
         inputs: &[input],
         db: ask.db,
@@ -168,7 +172,7 @@ fn make(
         now: ask.now,
     };
     let older = Older { database: &mut old, vehicles: own, made_from };
-    let Made { mut summary, in_place } = making.run(Whom::Earlier(older, models), None, reporter)?;
+    let Made { mut summary, in_place } = database.make(Whom::Earlier(older, models), None, reporter)?;
     for (id, settings) in others {
         if in_place {
             summary.vehicles.push(id);

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::RunError;
+use crate::error::RunError;
 use crate::osm::changes::ChangeError;
 
 /// Most files of one update: two weeks of minutes. Beyond that a newer extract is faster.

@@ -54,18 +54,18 @@ pub(crate) struct Fitter {
 type SectionKey = (Vec<u32>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
 
 /// A way that is certified if everything supposed holds.
-pub(super) struct Fitted {
+pub(crate) struct Fitted {
     /// The edges. Turns that are driven as one are one passage.
-    pub(super) drive: Drive,
-    pub(super) certified: Certified,
-    pub(super) supposed: Suppositions,
+    pub(crate) drive: Drive,
+    pub(crate) certified: Certified,
+    pub(crate) supposed: Suppositions,
     /// Whether the search with nothing supposed finds the same, once everything is measured exactly as supposed.
-    pub(super) suffices: bool,
+    pub(crate) suffices: bool,
 }
 
 /// The places on a way for which nothing does. None if no single place is at fault.
 #[derive(Clone)]
-pub(super) struct Unfit(pub(super) Vec<PartKind>);
+pub(crate) struct Unfit(pub(crate) Vec<PartKind>);
 
 /// A way while it is fitted.
 #[derive(Clone)]
@@ -105,7 +105,7 @@ impl Fitting {
 }
 
 impl Fitter {
-    pub(super) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
+    pub(crate) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
         let base = Arc::new(roads.network.site.clone());
         let stroke_of = roads.network.strokes_of_edges().into();
         Self::beside(roads, driver, base, stroke_of)
@@ -134,7 +134,7 @@ impl Fitter {
     }
 
     /// Fits a way. `access` says what has a price.
-    pub(super) fn fit(
+    pub(crate) fn fit(
         &mut self,
         way: &Way<'_>,
         access: &Access,

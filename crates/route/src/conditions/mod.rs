@@ -1,4 +1,4 @@
-//! Routes under conditions: where no route is certified outright, the way with the fewest and smallest conditions.
+//! Conditions of a route: what has to hold on site so that a way is certified, and what the search for such a way pays for it.
 //!
 //! A condition is a width or a kerb radius that somebody can measure on site. The route has one certificate over the whole, made on
 //! a network on which every condition holds. Without its conditions the route is not safe, and nothing here says that they hold.
@@ -10,8 +10,8 @@ mod less;
 mod level;
 mod mend;
 mod parts;
+mod prices;
 mod report;
-mod search;
 mod sections;
 mod sheet;
 mod stretch;
@@ -19,18 +19,20 @@ mod suppositions;
 mod together;
 mod turn_need;
 
-pub(super) use fit::Fitter;
+// What the search for a way fits ways with.
+pub(super) use fit::{Fitted, Fitter, Unfit};
+pub(super) use prices::conditional_access;
+
 pub use report::SHEET_COLUMNS;
-pub use search::Hopeless;
 pub use sheet::{csv as sheet_csv, features as sheet_features, geojson as sheet_geojson};
 
 // What `survey` opens places with.
 pub(super) use parts::BESIDE_M;
-pub(super) use search::{edge_price, turn_price};
+pub(super) use prices::{edge_price, turn_price};
 pub(super) use suppositions::Suppositions;
 pub(super) use turn_need::Turning;
 
-use super::plan::Route;
+use super::route::Route;
 use super::snap::Snapped;
 use crate::evidence::Quantity;
 use crate::network::Network;

@@ -8,7 +8,7 @@ use crate::assemble::PartKind;
 use crate::evidence::Quantity;
 use crate::network::Network;
 use crate::osm::{LonLat, rounded};
-use crate::report::title as title_of;
+use crate::title::title as title_of;
 use crate::words::Named as _;
 
 /// The columns of a sheet. Those that begin with `_` are for the reader; a register of measurements ignores them.

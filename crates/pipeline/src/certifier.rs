@@ -1,7 +1,7 @@
 //! Certifies the roads of a new database, portion by portion: all strokes, then all turns.
 
 use std::collections::BTreeSet;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::account::AccountRow;
@@ -9,22 +9,30 @@ use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, 
 use crate::network::{Network, Portion};
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
-use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
+use crate::rows::{EdgeCertificate, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{Checkpoint, PartOfWork, Stage, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
-use crate::verdict::{UnknownReason, Verdict};
 
-use super::assemble::{failed_stroke, failed_turn, unknown_rest};
-use super::making::{EdgeVerdicts, locked};
-use super::reuse::Earlier;
+use super::edge_verdicts::EdgeVerdicts;
+use super::error::RunError;
+use super::reuse::{Earlier, without_corridor};
 use super::roads::Roads;
 use super::share::Share;
-use super::{RunError, Summary};
+use super::summary::Summary;
+use super::task_results::{failed_stroke, failed_turn, unknown_rest};
 
-/// How to certify, and for whom.
-pub(super) struct Certifying<'a> {
+/// The work on one portion.
+struct PortionWork<'a> {
+    number: usize,
+    portion: &'a Portion,
+    /// Where its progress is told.
+    share: Share<'a>,
+}
+
+/// Certifies portions: how, and for whom.
+pub(super) struct Certifier<'a> {
     pub(super) settings: &'a Settings,
     pub(super) models: &'a [Model],
     /// The numbers of the vehicles in the new database.
@@ -36,7 +44,7 @@ pub(super) struct Certifying<'a> {
     pub(super) reporter: &'a dyn Reporter,
 }
 
-impl Certifying<'_> {
+impl Certifier<'_> {
     /// Certifies all edges. Takes what an earlier database or an earlier run has. Returns the verdicts, and the account.
     pub(super) fn strokes(
         &self,
@@ -54,8 +62,8 @@ impl Certifying<'_> {
             let portion = roads.portion(number);
             outcome.go_on(&portion.network);
             let own = portion.edges().count() as u64;
-            let share = Share::new(self.reporter, done, own);
-            self.strokes_of((number, portion), writer, checkpoint, (&mut outcome, &mut verdicts), &share)?;
+            let work = PortionWork { number, portion, share: Share::new(self.reporter, done, own) };
+            self.strokes_of(&work, writer, checkpoint, &mut outcome, &mut verdicts)?;
             for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
                 let plan = StoredPlan { at: portion.edge(plan.at), ..plan };
                 writer.plan(self.numbers[vehicle], self.settings.policy, &plan)?;
@@ -71,12 +79,13 @@ impl Certifying<'_> {
 
     fn strokes_of(
         &self,
-        (number, portion): (usize, &Portion),
+        work: &PortionWork<'_>,
         writer: &mut Writer,
         checkpoint: &mut Checkpoint,
-        (outcome, verdicts): (&mut Outcome, &mut EdgeVerdicts),
-        share: &Share<'_>,
+        outcome: &mut Outcome,
+        verdicts: &mut EdgeVerdicts,
     ) -> Result<(), RunError> {
+        let PortionWork { number, portion, share } = work;
         let (network, policy) = (&portion.network, self.settings.policy);
         let job = Job { network, models: self.models, settings: self.settings };
         let own = by_cell(network).into_iter().filter(|&stroke| portion.owns_stroke(stroke)).collect();
@@ -99,7 +108,7 @@ impl Certifying<'_> {
             verdicts.set(vehicle, edge, certificate.conclusion.verdict);
             writer.certificate(self.numbers[vehicle], policy, &EdgeCertificate { edge, ..certificate.clone() })
         };
-        let part = (Stage::Strokes, number as u32);
+        let part = (Stage::Strokes, *number as u32);
         checkpoint.each(part, |batch: Vec<StrokeMade>| {
             batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
         })?;
@@ -137,8 +146,8 @@ impl Certifying<'_> {
         for number in (0..portions).rev() {
             let portion = roads.portion(number);
             let own = portion.edges().count() as u64;
-            let share = Share::new(self.reporter, done, own);
-            self.turns_of((number, portion), &verdicts.of(portion), writer, checkpoint, &mut outcome, &share)?;
+            let work = PortionWork { number, portion, share: Share::new(self.reporter, done, own) };
+            self.turns_of(&work, &verdicts.of(portion), writer, checkpoint, &mut outcome)?;
             done += own;
         }
         self.reporter.end();
@@ -159,13 +168,13 @@ impl Certifying<'_> {
 
     fn turns_of(
         &self,
-        (number, portion): (usize, &Portion),
+        work: &PortionWork<'_>,
         verdicts: &EdgeVerdicts,
         writer: &mut Writer,
         checkpoint: &mut Checkpoint,
         outcome: &mut TurnOutcome,
-        share: &Share<'_>,
     ) -> Result<(), RunError> {
+        let PortionWork { number, portion, share } = work;
         let (network, policy) = (&portion.network, self.settings.policy);
         let mut turns: Vec<TurnFacts> = turn_facts(network, &self.settings.kerbs);
         let places = junction_places(network, &turns).into_iter().filter(|&(_, place)| portion.has(place)).collect();
@@ -189,7 +198,7 @@ impl Certifying<'_> {
         let mut sink = |vehicle: usize, certificate: &TurnCertificate| {
             writer.turn_certificate(self.numbers[vehicle], policy, first, certificate)
         };
-        let part = (Stage::Turns, number as u32);
+        let part = (Stage::Turns, *number as u32);
         checkpoint.each(part, |batch: Vec<TurnMade>| {
             batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
         })?;
@@ -206,17 +215,8 @@ impl Certifying<'_> {
     }
 }
 
-/// Why an edge that is taken over has no corridor, as far as its verdicts tell.
-pub(super) fn without_corridor(
-    measure: EdgeMeasure,
-    mut verdicts: impl Iterator<Item = Verdict>,
-) -> Option<UnknownReason> {
-    let reason = |verdict| match verdict {
-        Verdict::Unknown(reason @ (UnknownReason::Geometry | UnknownReason::Width)) => Some(reason),
-        _ => None,
-    };
-    let missing = measure == EdgeMeasure::default();
-    verdicts.find_map(reason).or(missing.then_some(UnknownReason::Geometry))
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What is not finished yet: indices in the order in which they are to be done.

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use crate::network::Portion;
 use crate::osm::Backdrop;
 use crate::osm::facts::Countries;
 use crate::osm::pbf::HeaderInfo;
@@ -14,18 +12,21 @@ use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{Database, MapChanges, Run, VehicleNo};
 use crate::turns::turn_facts;
-use crate::verdict::{UnknownReason, Verdict};
 
-use super::amending::amendment;
-use super::assemble::Results;
-use super::certifying::Certifying;
+use super::amendment::amendment;
+use super::certifier::Certifier;
+use super::error::RunError;
+use super::evidence;
 use super::identity::{self, Identity};
 use super::reuse::{self, Earlier, Older, Stored};
-use super::source::{self, Origin};
-use super::{RunError, Summary, evidence, read_roads, record, utc};
+use super::roads::{Portions, read_roads};
+use super::source::{self, MapSource, Origin, utc};
+use super::summary::Summary;
+use super::task_results::Results;
+use super::vehicle_record::record;
 
-/// What a database is made from.
-pub(super) struct Making<'a> {
+/// A database to make: where it is to lie, and what it is made from.
+pub(super) struct NewDatabase<'a> {
     pub(super) command: &'static str,
     pub(super) inputs: &'a [&'a Path],
     pub(super) db: &'a Path,
@@ -56,9 +57,9 @@ pub(super) struct Made {
     pub(super) in_place: bool,
 }
 
-impl Making<'_> {
+impl NewDatabase<'_> {
     /// Makes the database and puts it in place. With `results`, other machines have certified the portions.
-    pub(super) fn run(
+    pub(super) fn make(
         mut self,
         whom: Whom<'_>,
         mut results: Option<Results<'_>>,
@@ -78,11 +79,11 @@ impl Making<'_> {
         }
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || matches!(whom, Whom::Earlier(..));
-        let source = (self.inputs, &self.changes.changes);
+        let portions = if whole { Portions::Whole } else { Portions::OfAtMost(self.edges_at_once) };
+        let source = MapSource { inputs: self.inputs, changes: &self.changes.changes };
         // Written at once, so that it leaves memory before the network is built.
         let mut behind = |things: &[Backdrop]| Ok(writer.backdrop(things)?);
-        let division = (self.edges_at_once, whole);
-        let mut read = || read_roads(source, self.countries, division, &mut behind, reporter, &mut summary);
+        let mut read = || read_roads(source, self.countries, portions, &mut behind, reporter, &mut summary);
         let (mut roads, Origin { header, blake3: hash, segments }, models, mut stored, facts) = match whom {
             Whom::Chosen(choose) => {
                 let (roads, origin) = read()?;
@@ -125,7 +126,7 @@ impl Making<'_> {
         let mut checkpoint = writer.checkpoint(&identity.finish())?;
         if let Some(results) = &mut results {
             let first = self.inputs.first().copied().unwrap_or(Path::new(""));
-            results.take_over(&mut checkpoint, (first, &hash), roads.portions())?;
+            results.take_over(&mut checkpoint, first, &hash, roads.portions())?;
         }
         match (checkpoint.is_empty() || results.is_some(), writer.replaced_leftover()) {
             (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
@@ -137,7 +138,7 @@ impl Making<'_> {
         if checkpoint.is_empty()
             && let (Some(stored), Some(portion)) = (&mut stored, roads.only())
             && let Some((mut amendment, account)) =
-                amendment(stored, portion, &facts, self.settings, (reporter, &mut summary))
+                amendment(stored, portion, &facts, self.settings, reporter, &mut summary)
         {
             summary.account.extend(roads.account());
             summary.account.extend(account);
@@ -167,7 +168,7 @@ impl Making<'_> {
         };
         let numbers: Vec<VehicleNo> =
             models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<_, RunError>>()?;
-        let certifying = Certifying {
+        let certifier = Certifier {
             settings: self.settings,
             models: &models,
             numbers: &numbers,
@@ -175,13 +176,13 @@ impl Making<'_> {
             failed: results.as_ref().map(|results| &results.failed),
             reporter,
         };
-        let (verdicts, of_strokes) = certifying.strokes(&mut roads, &mut writer, &mut checkpoint, &mut summary)?;
+        let (verdicts, of_strokes) = certifier.strokes(&mut roads, &mut writer, &mut checkpoint, &mut summary)?;
         summary.account.extend(roads.account());
         summary.account.append(&mut of_measurements);
         summary.account.extend(of_strokes);
         let mut writer = writer.network_complete()?;
         if self.settings.turns {
-            certifying.turns(&mut roads, &verdicts, &mut writer, &mut checkpoint, &mut summary)?;
+            certifier.turns(&mut roads, &verdicts, &mut writer, &mut checkpoint, &mut summary)?;
         }
 
         let clock = Instant::now();
@@ -233,7 +234,7 @@ impl Making<'_> {
         read: impl FnOnce() -> T,
         reporter: &dyn Reporter,
     ) -> Result<(T, Option<Stored<'d>>), RunError> {
-        if let Some(why) = reuse::differs(older.database, models, self)? {
+        if let Some(why) = reuse::differs(older.database, models, self.countries, self.settings)? {
             reporter.note(&format!("all is certified again: {why}"));
             return Ok((read(), None));
         }
@@ -244,34 +245,5 @@ impl Making<'_> {
             let stored = stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
             Ok((read, Some(stored)))
         })
-    }
-}
-
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The verdicts by vehicle and edge, which certificates of turns need. Empty if no turns are certified.
-pub(super) struct EdgeVerdicts(pub(super) Vec<Vec<Verdict>>);
-
-impl EdgeVerdicts {
-    pub(super) fn new(edges: usize, models: &[Model], settings: &Settings) -> Self {
-        let edges = if settings.turns { edges } else { 0 };
-        Self(vec![vec![Verdict::Unknown(UnknownReason::Geometry); edges]; models.len()])
-    }
-
-    pub(super) fn set(&mut self, vehicle: usize, edge: u32, verdict: Verdict) {
-        if let Some(slot) = self.0.get_mut(vehicle).and_then(|edges| edges.get_mut(edge as usize)) {
-            *slot = verdict;
-        }
-    }
-
-    /// Those of a portion's edges, by their indices there.
-    pub(super) fn of(&self, portion: &Portion) -> Self {
-        let edges = 0..portion.network.edges.len() as u32;
-        let verdict = |verdicts: &Vec<Verdict>, edge| verdicts.get(portion.edge(edge) as usize).copied();
-        let unknown = Verdict::Unknown(UnknownReason::Geometry);
-        let of_vehicle = |verdicts| edges.clone().map(|edge| verdict(verdicts, edge).unwrap_or(unknown)).collect();
-        Self(self.0.iter().map(of_vehicle).collect())
     }
 }

@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use super::Summary;
 use super::again::{Again, StoredSet};
-use super::certifying::without_corridor;
-use super::reuse::{Certificates, Stored, is_undone, same_turn};
+use super::reuse::{Certificates, Stored, is_undone, same_turn, without_corridor};
+use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::{NearNodes, Outcome, Touched, TurnOutcome};
 use crate::network::{Differences, Network, Portion};
@@ -27,7 +26,8 @@ pub(super) fn amendment<'a>(
     after: &'a Portion,
     turns: &'a [TurnFacts],
     settings: &Settings,
-    (reporter, summary): (&dyn Reporter, &mut Summary),
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
 ) -> Option<(Amendment<'a>, Vec<AccountRow>)> {
     let clock = Instant::now();
     let whole = stored.has_these_edges();

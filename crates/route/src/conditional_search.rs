@@ -1,0 +1,97 @@
+//! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
+
+use super::assemble::{PartKind, Way};
+use super::conditions::{Conditional, Fitted, Fitter, Unfit, conditional_access};
+use super::graph::{Access, BARRED};
+use super::obstacles::{self, Refutation};
+use super::plan::{Planner, Question, Unanswered};
+use super::snap::Snapped;
+use crate::stop::{Stop, Stopped};
+
+/// How many ways are tried at most, if the question allows as many.
+const WAYS: usize = 20;
+
+/// No route, not even under conditions.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Hopeless {
+    /// Places on the ways that were tried for which no width, kerb radius or paving does.
+    pub places: Vec<PartKind>,
+    /// Whether the search stopped before all ways were tried.
+    pub gave_up: bool,
+}
+
+impl Planner {
+    /// The way with the fewest and smallest conditions, certified as a whole on a network on which they hold. `refuted` are the ways
+    /// that failed as a whole without conditions.
+    ///
+    /// # Errors
+    /// A place is near no road that the vehicle may lawfully use, or `stop` was told.
+    pub fn under_conditions(
+        &mut self,
+        question: &Question,
+        refuted: &[Refutation],
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
+        self.search_conditions(question, refuted, stop, || ())
+    }
+
+    /// As [`Self::under_conditions`]. `searching` is called when all places are on the roads, before the search, which takes long.
+    pub(crate) fn search_conditions(
+        &mut self,
+        question: &Question,
+        refuted: &[Refutation],
+        stop: &Stop,
+        searching: impl FnOnce(),
+    ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
+        self.stop = stop.clone();
+        let access = conditional_access(self.graph.roads(), &self.driver.permits, refuted);
+        let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
+        let snap = |place| self.snapper.snap(place, question.snap_m, open);
+        let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
+        searching();
+        let kept = self.fitter.take();
+        let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
+        let answer = self.fit(&mut fitter, question, snapped, access, stop);
+        self.fitter = Some(fitter);
+        Ok(answer?)
+    }
+
+    /// Fits one way after the other. Places for which nothing does are left out of the next one.
+    fn fit(
+        &self,
+        fitter: &mut Fitter,
+        question: &Question,
+        snapped: Vec<Snapped>,
+        mut access: Access,
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Stopped> {
+        let mut hopeless = Hopeless::default();
+        for _ in 0..WAYS.min(question.tries.max(1)) {
+            let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
+            let way = Way { drive: &found.drive, start, end };
+            match fitter.fit(&way, &access, stop)? {
+                Ok(Fitted { drive, certified, supposed, suffices }) => {
+                    found.drive = drive;
+                    let kerbs = &self.driver.permits.settings.kerbs;
+                    let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
+                    let route = self.route(&found, (start, end), certified);
+                    return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
+                }
+                Err(Unfit(places)) => {
+                    let mut barred = false;
+                    for at in places {
+                        let slot = obstacles::slot(&mut access, self.graph.movements(), at);
+                        barred |= slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED);
+                        hopeless.places.push(at);
+                    }
+                    // If nothing can be left out, the next search would find the same way.
+                    if !barred {
+                        break;
+                    }
+                }
+            }
+        }
+        hopeless.gave_up = true;
+        Ok(Err(hopeless))
+    }
+}
