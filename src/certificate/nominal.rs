@@ -30,9 +30,9 @@ pub(super) struct Nominal<'c> {
     lead: usize,
 }
 
-/// A place on the centreline, its tangent and its curvature.
+/// A point of the centreline, with its tangent and its curvature.
 #[derive(Clone, Copy)]
-struct Place {
+struct CentrelinePoint {
     at: [f64; 2],
     tangent: [f64; 2],
     curvature: f64,
@@ -48,7 +48,7 @@ impl<'c> Nominal<'c> {
         let mut nominal = Self { corridor, plan, vehicle, poses: Vec::new(), lead };
         let steer = |vertex: usize| {
             let s = (vertex as f64 - lead as f64) / PARTS as f64;
-            let place = nominal.place(s);
+            let place = nominal.centreline(s);
             let shift = plan.between_m(s);
             [place.at[0] - shift * place.tangent[1], place.at[1] + shift * place.tangent[0]]
         };
@@ -77,7 +77,7 @@ impl<'c> Nominal<'c> {
         let (s, _) = self.foot(self.point(moment, (unit, ahead_m, left_m)), wanted)?;
         let s = s.clamp(0.0, (self.corridor.len() - 1) as f64);
         let moment = self.crossing(s, (unit, ahead_m, left_m))?;
-        let lateral_m = across(self.place(s), self.point(moment, (unit, ahead_m, left_m)));
+        let lateral_m = across(self.centreline(s), self.point(moment, (unit, ahead_m, left_m)));
         Some((s * self.corridor.spacing_m, linear(column, s) - lateral_m * left_m.signum()))
     }
 
@@ -89,7 +89,7 @@ impl<'c> Nominal<'c> {
     /// The moment when a body point (unit, metres ahead of its axle, metres to its left) passes the normal at `s`: the vertex
     /// before it, and the share of the step after that vertex.
     fn crossing(&self, s: f64, (unit, ahead_m, left_m): (usize, f64, f64)) -> Option<(usize, f64)> {
-        let here = self.place(s);
+        let here = self.centreline(s);
         let off = |vertex: usize| along(here, self.poses[vertex][unit].place(ahead_m, left_m));
         let astray = (ASTRAY_PART * self.vehicle.length_m + ASTRAY_M) / self.corridor.spacing_m;
         let strays = |vertex: usize| (self.straight(vertex, unit, ahead_m) - s).abs();
@@ -135,7 +135,7 @@ impl<'c> Nominal<'c> {
     fn foot(&self, point: [f64; 2], guess: f64) -> Option<(f64, f64)> {
         let mut s = guess;
         for _ in 0..40 {
-            let place = self.place(s);
+            let place = self.centreline(s);
             let (along, lateral_m) = (along(place, point), across(place, point));
             if along.abs() < 1e-9 {
                 return Some((s, lateral_m));
@@ -146,7 +146,7 @@ impl<'c> Nominal<'c> {
     }
 
     /// The centreline at `s` (in stations). It goes straight on beyond both ends.
-    fn place(&self, s: f64) -> Place {
+    fn centreline(&self, s: f64) -> CentrelinePoint {
         let c = self.corridor;
         let last = c.len() - 1;
         let k = (s.max(0.0) as usize).min(last);
@@ -154,7 +154,7 @@ impl<'c> Nominal<'c> {
         let (sin, cos) = c.heading[k].sin_cos();
         let (from, curved) = ([c.x[k], c.y[k]], s > 0.0 && k < last);
         if !curved {
-            return Place { at: [from[0] + x * cos, from[1] + x * sin], tangent: [cos, sin], curvature: 0.0 };
+            return CentrelinePoint { at: [from[0] + x * cos, from[1] + x * sin], tangent: [cos, sin], curvature: 0.0 };
         }
         let rate = (c.curvature[k + 1] - c.curvature[k]) / c.spacing_m;
         let turn = |x: f64| x * (c.curvature[k] + 0.5 * rate * x);
@@ -165,7 +165,7 @@ impl<'c> Nominal<'c> {
             aside += weight * x * sin;
         }
         let (turned_sin, turned_cos) = turn(x).sin_cos();
-        Place {
+        CentrelinePoint {
             at: [from[0] + ahead * cos - aside * sin, from[1] + ahead * sin + aside * cos],
             tangent: [cos * turned_cos - sin * turned_sin, sin * turned_cos + cos * turned_sin],
             curvature: c.curvature[k] + rate * x,
@@ -173,14 +173,14 @@ impl<'c> Nominal<'c> {
     }
 }
 
-/// The distance of a point ahead of a place's normal, metres.
-fn along(place: Place, point: [f64; 2]) -> f64 {
-    (point[0] - place.at[0]) * place.tangent[0] + (point[1] - place.at[1]) * place.tangent[1]
+/// The distance of a point ahead of the normal at a point of the centreline, metres.
+fn along(on: CentrelinePoint, point: [f64; 2]) -> f64 {
+    (point[0] - on.at[0]) * on.tangent[0] + (point[1] - on.at[1]) * on.tangent[1]
 }
 
 /// The distance of a point to the left of the centreline, metres.
-fn across(place: Place, point: [f64; 2]) -> f64 {
-    (point[1] - place.at[1]) * place.tangent[0] - (point[0] - place.at[0]) * place.tangent[1]
+fn across(on: CentrelinePoint, point: [f64; 2]) -> f64 {
+    (point[1] - on.at[1]) * on.tangent[0] - (point[0] - on.at[0]) * on.tangent[1]
 }
 
 /// The value at `s` (in stations, on the corridor) of a column that is linear between stations.

@@ -111,8 +111,8 @@ impl Export {
 
     fn source<'s>(&self, session: &'s Session, path: &Path) -> anyhow::Result<Source<'s>> {
         let database = Database::open(path)?;
-        let wanted = self.vehicle.wanted(self.policy.corridor, true, "export");
-        let (database, set) = on_demand::certified(session, (path, database), &wanted)?;
+        let required = self.vehicle.required(self.policy.corridor, true, "export");
+        let (database, set) = on_demand::certified(session, (path, database), &required)?;
         database.close()?;
         let ask = export::Ask {
             db: path.to_owned(),

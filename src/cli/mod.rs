@@ -77,7 +77,7 @@ pub(crate) enum Verb {
     Diff(diff::Diff),
     Explain(explain::Explain),
     Route(route::Route),
-    Reach(reach::Reach),
+    Reach(reach::ReachQuery),
     Survey(survey::Survey),
     Corridor(corridor::Corridor),
     Export(export::Export),

@@ -11,7 +11,7 @@ use netcert::rows::{EdgeRow, Relative};
 use netcert::settings::Needs;
 use netcert::store::{Area, Beside, CertifiedSet, Database, QueryOptions, ReferenceReader, TurnQuery};
 use netcert::vehicle::Vehicle;
-use netcert::words::{Named, VerdictKind, verdict_words};
+use netcert::words::{Named, VerdictKind, at_local_time, verdict_words};
 
 use super::Session;
 use crate::cli::arguments::area;
@@ -110,11 +110,11 @@ impl Query {
         };
         let path = self.db.path()?;
         let database = Database::open(&path)?;
-        let wanted = self.vehicle.wanted(self.policy.corridor, self.turns, "query");
-        let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
+        let required = self.vehicle.required(self.policy.corridor, self.turns, "query");
+        let (mut database, set) = on_demand::certified(session, (&path, database), &required)?;
         let mut compared = None;
         if let Some(id) = &self.relative.relative_to {
-            let (opened, reference) = on_demand::reference(session, (&path, database), &wanted, (&set, id))?;
+            let (opened, reference) = on_demand::reference(session, (&path, database), &required, (&set, id))?;
             database = opened;
             compared = Some(ReferenceReader::open(&path, reference, self.time.at)?);
         }
@@ -203,7 +203,7 @@ impl Query {
 
     fn head(&self, policy: Policy, mut scope: String) -> Head {
         let relative_to = self.relative.relative_to.clone();
-        scope += &self.time.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+        scope += &at_local_time(self.time.at);
         scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
         Head { vehicle: self.vehicle.id.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
     }

@@ -6,7 +6,8 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use netcert::network::Network;
 use netcert::osm::rounded;
-use netcert::route::{self, Measure, PartKind, Position, Reach as Found, Snapper};
+use netcert::route::{self, Measure, PartKind, Position, ReachableEdges, Snapper};
+use netcert::words::at_local_time;
 use serde_json::{Value, json};
 
 use super::Session;
@@ -30,7 +31,7 @@ GeoJSON has one line for each certified edge. `reach` is `return` (the vehicle g
 `there` (the vehicle gets there but not back), `opened` (the vehicle gets there only with --what-if)
 or `no`. `component` is the number of a part of the network in which the vehicle can drive from
 every edge to every other; the largest part has number 0.")]
-pub(crate) struct Reach {
+pub(crate) struct ReachQuery {
     #[command(flatten)]
     inputs: RoutingArgs,
     /// The place where the vehicle begins, degrees.
@@ -54,7 +55,7 @@ enum Format {
     Geojson,
 }
 
-impl Reach {
+impl ReachQuery {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let inputs = self.inputs.load(session, "reach")?;
         let graph = inputs.graph(Measure::Distance);
@@ -97,8 +98,8 @@ fn km(network: &Network, on: impl Fn(usize) -> bool) -> f64 {
 fn tell(
     out: &mut dyn Write,
     inputs: &RoutingInputs,
-    now: &Found,
-    opened: Option<&(u32, Found)>,
+    now: &ReachableEdges,
+    opened: Option<&(u32, ReachableEdges)>,
     components: &route::Components,
 ) -> std::io::Result<()> {
     let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
@@ -125,13 +126,18 @@ fn tell(
         );
         writeln!(out, "\n{}", wrapped(&text, "  "))?;
     }
-    let time = inputs.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+    let time = at_local_time(inputs.at);
     let scope =
         format!("Edges and turns are certified by themselves, whole routes are not: `netcert route` does that.{time}");
     writeln!(out, "\n{}", wrapped(&scope, ""))
 }
 
-fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
+fn geojson(
+    inputs: &RoutingInputs,
+    now: &ReachableEdges,
+    opened: Option<&ReachableEdges>,
+    components: &route::Components,
+) -> Value {
     let network = &inputs.roads.network;
     let mut features = Vec::new();
     for (i, edge) in network.edges.iter().enumerate() {

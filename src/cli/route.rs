@@ -16,7 +16,7 @@ use netcert::route::{
     Question, Route as Found,
 };
 use netcert::stop::Stop;
-use netcert::words::Named;
+use netcert::words::{Named, at_local_time};
 
 use super::Session;
 use super::explain::wrapped;
@@ -267,7 +267,7 @@ fn tell(
         writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
     }
     let policy = inputs.settings().policy.name();
-    let time = inputs.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+    let time = at_local_time(inputs.at);
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
          them); no permit. Times are by class of road and tagged limits.{time}"

@@ -32,6 +32,13 @@ macro_rules! named {
     };
 }
 
+/// The sentence that says of which time an answer is, such as ` At 2026-12-01T08:00:00, local time.`, with a space before it. Empty without
+/// a time.
+#[must_use]
+pub fn at_local_time(time: Option<impl std::fmt::Display>) -> String {
+    time.map_or_else(String::new, |time| format!(" At {time}, local time."))
+}
+
 /// A verdict without its reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)] // as in `Verdict`

@@ -13,7 +13,7 @@ use super::permit::{Permitted, Tally};
 use crate::osm::facts::WidthSource;
 use crate::store::{Database, StoreError};
 use crate::vehicle::Vehicle;
-use crate::words::Named;
+use crate::words::{Named, at_local_time};
 
 /// The source and licence of the data: <https://opendatacommons.org/licenses/odbl/1-0/>
 const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
@@ -110,7 +110,7 @@ impl Header {
     #[must_use]
     pub fn scope(&self) -> String {
         let p = &self.provenance;
-        let time = self.ask.at.map_or_else(String::new, |time| format!(" At {time}, local time."));
+        let time = at_local_time(self.ask.at);
         format!(
             "A permit holds within the stated model, widths and error bounds, for {} steered within {} m of the planned path \
              (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed \

@@ -43,7 +43,7 @@ pub enum PartKind {
 
 /// A stretch of a route.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct RoutePart {
     /// The kind of the part.
     pub kind: PartKind,
     /// The part's stations in the route's corridor. Neighbouring parts share their end stations.
@@ -58,7 +58,7 @@ pub struct RoutePath {
     /// The metric frame of the corridor.
     pub frame: Frame,
     /// The parts in driving order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<RoutePart>,
 }
 
 /// Why a route's pieces give no corridor.
@@ -404,16 +404,16 @@ impl Strung {
         }
         let last = corridor.len() - 1;
         let station = |i: usize| (along[i] / sum * last as f64).round() as usize;
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<RoutePart> = Vec::new();
         for (i, &kind) in self.kinds.iter().enumerate() {
             match parts.last_mut() {
                 Some(part) if part.kind == kind => part.stations.end = station(i) + 1,
                 Some(part) => {
                     let start = station(i);
                     part.stations.end = start + 1;
-                    parts.push(Part { kind, stations: start..start + 1 });
+                    parts.push(RoutePart { kind, stations: start..start + 1 });
                 }
-                None => parts.push(Part { kind, stations: 0..1 }),
+                None => parts.push(RoutePart { kind, stations: 0..1 }),
             }
         }
         if let Some(part) = parts.last_mut() {

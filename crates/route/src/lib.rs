@@ -73,7 +73,7 @@ mod title;
 mod turning;
 mod whole;
 
-pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
+pub use assemble::{AssemblyError, PartKind, RoutePart, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
 pub use beside::Beside;
 pub use conditional_search::Hopeless;
@@ -85,7 +85,7 @@ pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Unanswered};
-pub use reach::{Components, Reach, components, reach, with_edge};
+pub use reach::{Components, ReachableEdges, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
 pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members};
 pub use roads::Roads;

@@ -8,7 +8,7 @@ use crate::network::MovementKind;
 
 /// The reachable edges.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reach {
+pub struct ReachableEdges {
     /// By edge: whether a way leads there. An arc that is driven only as part of a passage does not count.
     pub there: Vec<bool>,
     /// By edge: whether a way leads there and another leads back to the beginning.
@@ -26,7 +26,7 @@ pub struct Components {
 
 /// The edges that can be reached from any of the edges `starts`.
 #[must_use]
-pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> Reach {
+pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> ReachableEdges {
     let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
     let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
     let mut steps: Vec<(State, State)> = Vec::new();
@@ -65,7 +65,7 @@ pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> Reach {
         }
         edges
     };
-    Reach { there: edges(&seen), and_back: edges(&returning) }
+    ReachableEdges { there: edges(&seen), and_back: edges(&returning) }
 }
 
 fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn FnMut(State))) -> Vec<bool> {

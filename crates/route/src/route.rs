@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::assemble::{Part, PartKind, RoutePath};
+use super::assemble::{PartKind, RoutePart, RoutePath};
 use super::drive::Drive;
 use crate::network::{Edge, Network, destination_tag};
 use crate::osm::facts::At;
@@ -66,7 +66,7 @@ impl Route {
     pub fn parts(&self) -> Vec<PartResult> {
         let spacing_m = self.path.corridor.spacing_m;
         let certificate = &self.certificate;
-        let part = |part: &Part| {
+        let part = |part: &RoutePart| {
             let stations = self.noted(&part.stations);
             let own = |column: &[f64]| column.get(stations.clone()).unwrap_or_default().to_vec();
             let both = own(&certificate.left_m).into_iter().chain(own(&certificate.right_m));

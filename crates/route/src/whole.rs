@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use super::assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, movement};
+use super::assemble::{AssemblyError, PartKind, RoutePart, RoutePath, Way, assemble, movement};
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
@@ -249,7 +249,7 @@ fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
 
 /// The turn that is nearest to a station, if it is within some metres.
 pub(super) fn turn_near(path: &RoutePath, at: usize, within_m: f64) -> Option<PartKind> {
-    let distance = |part: &&Part| {
+    let distance = |part: &&RoutePart| {
         let stations = &part.stations;
         if stations.contains(&at) { 0 } else { stations.start.abs_diff(at).min(stations.end.abs_diff(at)) }
     };

@@ -59,8 +59,8 @@ impl RoutingArgs {
     pub(crate) fn load(&self, session: &Session, command: &'static str) -> anyhow::Result<RoutingInputs> {
         let path = self.db.path()?;
         let database = Database::open(&path)?;
-        let wanted = self.vehicle.wanted(self.policy.corridor, true, command);
-        let (database, set) = on_demand::certified(session, (&path, database), &wanted)?;
+        let required = self.vehicle.required(self.policy.corridor, true, command);
+        let (database, set) = on_demand::certified(session, (&path, database), &required)?;
         database.close()?;
         let mut region = Region::open(&path)?;
         if let Some(time) = self.time.at {

@@ -3,7 +3,7 @@
 use super::fit::{Fitter, Fitting};
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
-use crate::assemble::{Part, PartKind};
+use crate::assemble::{PartKind, RoutePart};
 use crate::certify::{MOST_KERB_M, MOST_MORE_M};
 use crate::stet::SpanResult;
 use crate::whole::{Looked, turn_near};
@@ -64,7 +64,7 @@ pub(super) fn failing(looked: &Looked) -> Vec<Failing> {
 }
 
 /// The turn that a part's failure is attributed to, or the part itself if no turn is near.
-fn culprit(looked: &Looked, part: &Part, result: &SpanResult) -> PartKind {
+fn culprit(looked: &Looked, part: &RoutePart, result: &SpanResult) -> PartKind {
     if matches!(part.kind, PartKind::Turn { .. }) {
         return part.kind;
     }

@@ -1,4 +1,4 @@
-//! Which items to open together: those on the cheapest way from the part to a road, and on the cheapest way back.
+//! Which items to open together: those on the cheapest way from the component to a road, and on the cheapest way back.
 //!
 //! A vehicle does not turn back on the road. So one junction alone seldom joins anything: what leads there and what leads back open only
 //! together. Everything here supposes that measuring helps; what is near the top is certified afterwards.
@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use rayon::prelude::*;
 
+use super::component::{Component, Scratch};
 use super::joints::{CLOSED, Item, Joints, OPEN};
-use super::part::{Part, Scratch};
 use crate::stop::{Stop, Stopped};
 
 /// The greatest price of a way there and back, centimetres of missing room.
@@ -42,7 +42,7 @@ impl Bundle {
 pub(super) struct Field<'a> {
     pub(super) joints: &'a Joints,
     pub(super) prices: &'a [u32],
-    pub(super) part: &'a Part,
+    pub(super) component: &'a Component,
     pub(super) lengths_m: &'a [f64],
     /// Items by place.
     pub(super) by_place: &'a [Vec<Item>],
@@ -55,7 +55,7 @@ impl Field<'_> {
         let mut found: BTreeSet<Vec<Item>> = BTreeSet::new();
         for edge in 0..self.joints.edges() as u32 {
             let sum = there.cm[edge as usize].saturating_add(back.cm[edge as usize]);
-            if self.part.has(edge) || sum > MOST_CM {
+            if self.component.has(edge) || sum > MOST_CM {
                 continue;
             }
             let mut items = there.items(edge);
@@ -79,7 +79,7 @@ impl Field<'_> {
             || Scratch::new(self.joints),
             |scratch, (items, cost)| {
                 stop.check()?;
-                let opens_m = self.part.joined_m(self.joints, self.prices, &items, self.lengths_m, scratch);
+                let opens_m = self.component.joined_m(self.joints, self.prices, &items, self.lengths_m, scratch);
                 Ok((opens_m >= LEAST_M).then_some(Bundle { items, opens_m, cost }))
             },
         );
@@ -91,7 +91,7 @@ impl Field<'_> {
     /// What items open by themselves. `None` if it is next to nothing.
     pub(super) fn rated(&self, items: Vec<Item>) -> Option<Bundle> {
         let mut scratch = Scratch::new(self.joints);
-        let opens_m = self.part.joined_m(self.joints, self.prices, &items, self.lengths_m, &mut scratch);
+        let opens_m = self.component.joined_m(self.joints, self.prices, &items, self.lengths_m, &mut scratch);
         let cost = self.cost(&items);
         (opens_m >= LEAST_M).then_some(Bundle { items, opens_m, cost })
     }
@@ -104,7 +104,7 @@ impl Field<'_> {
         dearest.sort_by_key(|&item| Reverse(self.prices[item as usize]));
         for item in dearest {
             let without: Vec<Item> = items.iter().copied().filter(|&other| other != item).collect();
-            let opens_m = self.part.joined_m(self.joints, self.prices, &without, self.lengths_m, &mut scratch);
+            let opens_m = self.component.joined_m(self.joints, self.prices, &without, self.lengths_m, &mut scratch);
             if opens_m >= bundle.opens_m - LEAST_M {
                 items = without;
             }
@@ -137,7 +137,7 @@ impl Field<'_> {
     }
 }
 
-/// The cheapest ways from the part to each edge, or back.
+/// The cheapest ways from the component to each edge, or back.
 struct Ways {
     /// By edge: the price.
     cm: Vec<u32>,
@@ -151,11 +151,11 @@ const NONE: u32 = u32::MAX;
 
 impl Ways {
     fn find(field: &Field<'_>, ahead: bool) -> Self {
-        let Field { joints, prices, part, .. } = field;
+        let Field { joints, prices, component, .. } = field;
         let edges = joints.edges();
         let mut ways = Self { cm: vec![u32::MAX; edges], last: vec![NONE; edges], links: Vec::new() };
         let mut queue = BinaryHeap::new();
-        for edge in (0..edges as u32).filter(|&edge| part.has(edge)) {
+        for edge in (0..edges as u32).filter(|&edge| component.has(edge)) {
             ways.cm[edge as usize] = 0;
             queue.push(Reverse((0, edge)));
         }

@@ -4,10 +4,10 @@
 //! only together. What it opens is certified as if every value were measured as named. Whole routes are not certified here.
 
 mod bundles;
+mod component;
 mod joints;
 mod opening;
 mod pairs;
-mod part;
 mod region;
 mod report;
 

@@ -33,7 +33,7 @@ pub struct Pairs {
 
 /// What has to be measured: a quantity at an edge, a corner or a junction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Spot {
+enum Measurand {
     Edge(Quantity, u32),
     Corner(i64, [u32; 2]),
     Junction(i64),
@@ -87,10 +87,10 @@ fn ranked(
     made: &dyn Fn(Vec<Condition>) -> Step,
     stop: &Stop,
 ) -> Result<Vec<(usize, Step)>, crate::stop::Stopped> {
-    let mut needed: BTreeMap<Spot, f64> = BTreeMap::new();
+    let mut needed: BTreeMap<Measurand, f64> = BTreeMap::new();
     for condition in wanted.iter().flatten() {
-        for spot in spots(condition) {
-            let known_m = needed.entry(spot).or_insert(condition.needed_m);
+        for measurand in measurands(condition) {
+            let known_m = needed.entry(measurand).or_insert(condition.needed_m);
             *known_m = known_m.max(condition.needed_m);
         }
     }
@@ -115,8 +115,8 @@ fn ranked(
         }
         let Some((_, completes, pair)) = best else { break };
         steps.push((completes, made(open(&wanted[pair], &needed))));
-        let measured = left.spots[pair].clone();
-        needed.retain(|spot, _| !measured.contains(spot));
+        let measured = left.measurands[pair].clone();
+        needed.retain(|measurand, _| !measured.contains(measurand));
         left.measure(&measured).into_iter().for_each(|pair| places[pair] = None);
     }
     Ok(steps)
@@ -125,52 +125,53 @@ fn ranked(
 /// What has still to be measured for each pair.
 struct Left {
     /// By pair.
-    spots: Vec<BTreeSet<Spot>>,
+    measurands: Vec<BTreeSet<Measurand>>,
     done: Vec<bool>,
-    /// By spot: the pairs that need it.
-    of_spot: BTreeMap<Spot, Vec<usize>>,
-    /// By pair: for a count of spots. All are 0 between two counts.
+    /// By measurand: the pairs that need it.
+    of_measurand: BTreeMap<Measurand, Vec<usize>>,
+    /// By pair: for a count of measurands. All are 0 between two counts.
     counts: Vec<usize>,
-    /// Pairs that are not done and need no spot. They are complete with the first step, whatever it is.
+    /// Pairs that are not done and need no measurand. They are complete with the first step, whatever it is.
     idle: usize,
 }
 
 impl Left {
     fn of(wanted: &[Vec<Condition>]) -> Self {
-        let spots: Vec<BTreeSet<Spot>> = wanted.iter().map(|pair| pair.iter().flat_map(spots).collect()).collect();
-        let mut of_spot: BTreeMap<Spot, Vec<usize>> = BTreeMap::new();
-        for (pair, spots) in spots.iter().enumerate() {
-            spots.iter().for_each(|spot| of_spot.entry(*spot).or_default().push(pair));
+        let measurands: Vec<BTreeSet<Measurand>> =
+            wanted.iter().map(|pair| pair.iter().flat_map(measurands).collect()).collect();
+        let mut of_measurand: BTreeMap<Measurand, Vec<usize>> = BTreeMap::new();
+        for (pair, measurands) in measurands.iter().enumerate() {
+            measurands.iter().for_each(|measurand| of_measurand.entry(*measurand).or_default().push(pair));
         }
-        let idle = spots.iter().filter(|spots| spots.is_empty()).count();
-        Self { done: vec![false; spots.len()], counts: vec![0; spots.len()], idle, spots, of_spot }
+        let idle = measurands.iter().filter(|measurands| measurands.is_empty()).count();
+        Self { done: vec![false; measurands.len()], counts: vec![0; measurands.len()], idle, measurands, of_measurand }
     }
 
-    /// How many pairs are complete once all spots of one are measured. Only pairs that share a spot with it are looked at.
+    /// How many pairs are complete once all measurands of one are measured. Only pairs that share a measurand with it are looked at.
     fn completed_by(&mut self, pair: usize) -> usize {
         let mut met = Vec::new();
-        for &other in self.spots[pair].iter().filter_map(|spot| self.of_spot.get(spot)).flatten() {
+        for &other in self.measurands[pair].iter().filter_map(|measurand| self.of_measurand.get(measurand)).flatten() {
             if self.counts[other] == 0 {
                 met.push(other);
             }
             self.counts[other] += 1;
         }
-        let whole = met.iter().filter(|&&other| self.counts[other] == self.spots[other].len()).count();
+        let whole = met.iter().filter(|&&other| self.counts[other] == self.measurands[other].len()).count();
         met.into_iter().for_each(|other| self.counts[other] = 0);
         self.idle + whole
     }
 
     /// Takes out what is measured. Returns the pairs that needed some of it.
-    fn measure(&mut self, measured: &BTreeSet<Spot>) -> BTreeSet<usize> {
+    fn measure(&mut self, measured: &BTreeSet<Measurand>) -> BTreeSet<usize> {
         let mut met = BTreeSet::new();
-        for spot in measured {
-            for pair in self.of_spot.remove(spot).unwrap_or_default() {
-                self.spots[pair].remove(spot);
+        for measurand in measured {
+            for pair in self.of_measurand.remove(measurand).unwrap_or_default() {
+                self.measurands[pair].remove(measurand);
                 met.insert(pair);
             }
         }
         self.idle = 0;
-        self.done.iter_mut().zip(&self.spots).for_each(|(done, spots)| *done |= spots.is_empty());
+        self.done.iter_mut().zip(&self.measurands).for_each(|(done, measurands)| *done |= measurands.is_empty());
         met
     }
 }
@@ -198,16 +199,16 @@ fn conditions(
     }
 }
 
-fn spots(condition: &Condition) -> Vec<Spot> {
+fn measurands(condition: &Condition) -> Vec<Measurand> {
     match &condition.at {
-        ConditionAt::Road(edges) => edges.iter().map(|&edge| Spot::Edge(condition.quantity, edge)).collect(),
-        ConditionAt::Corner { node, between } => vec![Spot::Corner(*node, *between)],
-        ConditionAt::Junction(node) => vec![Spot::Junction(*node)],
+        ConditionAt::Road(edges) => edges.iter().map(|&edge| Measurand::Edge(condition.quantity, edge)).collect(),
+        ConditionAt::Corner { node, between } => vec![Measurand::Corner(*node, *between)],
+        ConditionAt::Junction(node) => vec![Measurand::Junction(*node)],
     }
 }
 
 /// What of a route has still to be measured, with the greatest value that any route asks for there. Edges that need the same stay together.
-fn open(conditions: &[Condition], needed: &BTreeMap<Spot, f64>) -> Vec<Condition> {
+fn open(conditions: &[Condition], needed: &BTreeMap<Measurand, f64>) -> Vec<Condition> {
     let mut open: Vec<Condition> = Vec::new();
     for condition in conditions {
         match &condition.at {
@@ -219,7 +220,7 @@ fn open(conditions: &[Condition], needed: &BTreeMap<Spot, f64>) -> Vec<Condition
                     }
                 };
                 for &edge in edges {
-                    let value_m = needed.get(&Spot::Edge(condition.quantity, edge)).copied();
+                    let value_m = needed.get(&Measurand::Edge(condition.quantity, edge)).copied();
                     run = match (run.take(), value_m) {
                         (Some((needed_m, mut edges)), Some(value_m)) if needed_m == value_m => {
                             edges.push(edge);
@@ -234,7 +235,7 @@ fn open(conditions: &[Condition], needed: &BTreeMap<Spot, f64>) -> Vec<Condition
                 close(run);
             }
             _ => {
-                let value_m = spots(condition).first().and_then(|spot| needed.get(spot)).copied();
+                let value_m = measurands(condition).first().and_then(|measurand| needed.get(measurand)).copied();
                 open.extend(value_m.map(|needed_m| Condition { needed_m, ..condition.clone() }));
             }
         }
@@ -279,28 +280,29 @@ mod tests {
 
     /// The definition: each step of each pair is tried on all pairs.
     fn one_by_one(wanted: &[Vec<Condition>], limit: usize) -> Vec<(usize, Step)> {
-        let mut needed: BTreeMap<Spot, f64> = BTreeMap::new();
+        let mut needed: BTreeMap<Measurand, f64> = BTreeMap::new();
         for condition in wanted.iter().flatten() {
-            for spot in spots(condition) {
-                let known_m = needed.entry(spot).or_insert(condition.needed_m);
+            for measurand in measurands(condition) {
+                let known_m = needed.entry(measurand).or_insert(condition.needed_m);
                 *known_m = known_m.max(condition.needed_m);
             }
         }
-        let complete = |pair: &Vec<Condition>, needed: &BTreeMap<Spot, f64>| {
-            pair.iter().flat_map(spots).all(|spot| !needed.contains_key(&spot))
+        let complete = |pair: &Vec<Condition>, needed: &BTreeMap<Measurand, f64>| {
+            pair.iter().flat_map(measurands).all(|measurand| !needed.contains_key(&measurand))
         };
         let (mut done, mut steps) = (vec![false; wanted.len()], Vec::new());
         while steps.len() < limit {
             let best = (0..wanted.len()).filter(|&pair| !done[pair]).map(|pair| {
                 let step = made(open(&wanted[pair], &needed));
                 let mut then = needed.clone();
-                step.conditions().flat_map(spots).for_each(|spot| {
-                    then.remove(&spot);
+                step.conditions().flat_map(measurands).for_each(|measurand| {
+                    then.remove(&measurand);
                 });
                 let completes = (0..wanted.len()).filter(|&k| !done[k] && complete(&wanted[k], &then)).count();
                 (completes, step, then)
             });
-            let worth = |step: &(usize, Step, BTreeMap<Spot, f64>)| step.0 as f64 / step.1.places.len().max(1) as f64;
+            let worth =
+                |step: &(usize, Step, BTreeMap<Measurand, f64>)| step.0 as f64 / step.1.places.len().max(1) as f64;
             let best = best.reduce(|best, next| if worth(&next) > worth(&best) { next } else { best });
             let Some((completes, step, then)) = best else { break };
             needed = then;

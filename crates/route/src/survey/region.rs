@@ -1,11 +1,11 @@
-//! A survey of a whole region: what joins the part in which a vehicle can drive from everywhere to everywhere.
+//! A survey of a whole region: what joins the component in which a vehicle can drive from everywhere to everywhere.
 
 use std::sync::Arc;
 
 use super::bundles::{Bundle, Field};
+use super::component::Component;
 use super::joints::{CLOSED, Item, Joints, OPEN};
 use super::opening::{Hopeless, Opened, Opener};
-use super::part::Part;
 use super::{Opens, Step, Survey};
 use crate::conditions::Suppositions;
 use crate::driver::Driver;
@@ -20,7 +20,7 @@ use crate::stop::{Stop, Stopped};
 /// How many bundles are certified for one step, at most.
 const TRIES: usize = 16;
 
-/// The measurements that open most of a region for a vehicle, the best first. The part that grows is the one with the most edges, or the
+/// The measurements that open most of a region for a vehicle, the best first. The component that grows is the one with the most edges, or the
 /// longest one that has one of the edges `from`. `stop` is checked before each search and each place that is certified.
 ///
 /// # Errors
@@ -43,7 +43,7 @@ pub fn survey_region(
     let Some(anchor) = anchor(roads, driver, speeds, &joints, (&prices, &lengths_m), from) else { return Ok(survey) };
     let mut surveyor = Surveyor {
         opener: Opener::new(roads, driver, &joints),
-        part: Part::of(&joints, &prices, anchor),
+        component: Component::of(&joints, &prices, anchor),
         permits: driver.permits.clone(),
         by_place: joints.by_place(),
         closed: Vec::new(),
@@ -53,7 +53,7 @@ pub fn survey_region(
         prices,
         anchor,
     };
-    survey.before = surveyor.part.length_m(&surveyor.lengths_m);
+    survey.before = surveyor.component.length_m(&surveyor.lengths_m);
     let mut reachable = survey.before;
     reporter.begin("survey", limit as u64);
     for rank in 0..limit {
@@ -69,7 +69,7 @@ pub fn survey_region(
     Ok(survey)
 }
 
-/// An edge of the part that is to grow. `None` if nothing is certified.
+/// An edge of the component that is to grow. `None` if nothing is certified.
 fn anchor(
     roads: &Arc<Roads>,
     driver: &Driver,
@@ -82,7 +82,7 @@ fn anchor(
     // A journey that begins on a road to a destination goes on on the road before it.
     let usable =
         from.iter().copied().filter(|&edge| usable(edge)).map(|edge| joints.way_out(edge, usable).unwrap_or(edge));
-    let length_m = |&edge: &u32| Part::of(joints, prices, edge).length_m(lengths_m);
+    let length_m = |&edge: &u32| Component::of(joints, prices, edge).length_m(lengths_m);
     if let Some(edge) = usable.max_by(|a, b| length_m(a).total_cmp(&length_m(b))) {
         return Some(edge);
     }
@@ -100,14 +100,14 @@ struct Surveyor<'a> {
     /// What is open with everything chosen, and what is not.
     permits: Permits,
     prices: Vec<u32>,
-    part: Part,
+    component: Component,
     opener: Opener,
     /// Items that nothing opens.
     closed: Vec<Item>,
 }
 
 impl Surveyor<'_> {
-    /// The best step from here, and the length of the part after it.
+    /// The best step from here, and the length of the component after it.
     fn best(&mut self, gave_up: &mut bool, stop: &Stop) -> Result<Option<(Opened, f64)>, Stopped> {
         let mut tries = TRIES;
         loop {
@@ -134,8 +134,8 @@ impl Surveyor<'_> {
                 Some((_, bundle, supposed)) => {
                     let opened = self.opener.certify(&self.joints, supposed, &self.permits);
                     let prices = self.prices_with(&opened.permits);
-                    let now_m = Part::of(&self.joints, &prices, self.anchor).length_m(&self.lengths_m);
-                    if now_m > self.part.length_m(&self.lengths_m) {
+                    let now_m = Component::of(&self.joints, &prices, self.anchor).length_m(&self.lengths_m);
+                    if now_m > self.component.length_m(&self.lengths_m) {
                         return Ok(Some((opened, now_m)));
                     }
                     self.close(bundle.items);
@@ -156,8 +156,8 @@ impl Surveyor<'_> {
     }
 
     fn field(&self) -> Field<'_> {
-        let Self { joints, prices, part, lengths_m, by_place, .. } = self;
-        Field { joints, prices, part, lengths_m, by_place }
+        let Self { joints, prices, component, lengths_m, by_place, .. } = self;
+        Field { joints, prices, component, lengths_m, by_place }
     }
 
     /// The bundle without what has turned out to be hopeless, if it still opens as much.
@@ -181,7 +181,7 @@ impl Surveyor<'_> {
     fn choose(&mut self, opened: Opened) {
         self.permits = opened.permits.clone();
         self.prices = self.prices_with(&self.permits);
-        self.part = Part::of(&self.joints, &self.prices, self.anchor);
+        self.component = Component::of(&self.joints, &self.prices, self.anchor);
         self.opener.choose(opened);
     }
 

@@ -1,9 +1,9 @@
-//! The part of the roads in which a vehicle can drive from everywhere to everywhere, and what joins it when more is open.
+//! The component of the roads in which a vehicle can drive from everywhere to everywhere, and what joins it when more is open.
 
 use super::joints::{CLOSED, Item, Joints, OPEN, Step};
 
 /// The roads from which one edge can be reached and that can be reached from it.
-pub(super) struct Part {
+pub(super) struct Component {
     /// By edge: whether a way leads there.
     pub(super) there: Vec<bool>,
     /// By edge: whether a way leads back.
@@ -26,8 +26,8 @@ impl Scratch {
     }
 }
 
-impl Part {
-    /// The part of an edge over everything that is open.
+impl Component {
+    /// The component of an edge over everything that is open.
     pub(super) fn of(joints: &Joints, prices: &[u32], edge: u32) -> Self {
         let flood = |ahead: bool| {
             let mut seen = vec![false; joints.edges()];
@@ -50,19 +50,19 @@ impl Part {
         Self { there: flood(true), back: flood(false) }
     }
 
-    /// Whether an edge belongs to the part.
+    /// Whether an edge belongs to the component.
     pub(super) fn has(&self, edge: u32) -> bool {
         self.there[edge as usize] && self.back[edge as usize]
     }
 
-    /// The sum of `lengths_m` over the edges of the part.
+    /// The sum of `lengths_m` over the edges of the component.
     pub(super) fn length_m(&self, lengths_m: &[f64]) -> f64 {
         // The fold begins at 0.0, because an empty `sum` of floats is -0.0.
         let on = (0..).zip(lengths_m).filter(|(edge, _)| self.has(*edge));
         on.map(|(_, length_m)| length_m).fold(0.0, |sum, m| sum + m)
     }
 
-    /// The length of what joins the part if `items` are open, too.
+    /// The length of what joins the component if `items` are open, too.
     pub(super) fn joined_m(
         &self,
         joints: &Joints,
