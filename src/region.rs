@@ -230,7 +230,7 @@ impl Region {
         let (set, _) = self.certified(vehicle, policy)?;
         let (_, other) = self.certified(reference, policy)?;
         let reference = self.database.reference(&set, reference)?;
-        Ok(Peer::stored(&mut self.database, &set, (&reference, &other))?)
+        Ok(Peer::stored(&mut self.database, &set, &reference, &other)?)
     }
 
     /// Explains why an edge is safe or unsafe for a vehicle. The certificate is computed again with the set's settings.

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use netcert::corridor::Params;
 use netcert::osm::facts::Policy;
-use netcert::pipeline::{TaskError, TaskJob};
+use netcert::pipeline::{NeededTasks, TaskError, TaskJob};
 use netcert::settings::{Needs, Settings};
 use netcert::vehicle::Vehicle as LibraryVehicle;
 use pyo3::prelude::*;
@@ -68,7 +68,8 @@ pub(crate) fn certify_turns<'py>(
     incomplete: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let verdicts: Vec<&[u8]> = verdicts.iter().map(|bytes| &**bytes).collect();
-    let done = run(py, |stop| TaskJob::read(job)?.turns(task, &verdicts, incomplete, stop))?;
+    let needed = if incomplete { NeededTasks::SomeFailed } else { NeededTasks::Done };
+    let done = run(py, |stop| TaskJob::read(job)?.turns(task, &verdicts, needed, stop))?;
     Ok(PyBytes::new(py, &done))
 }
 

@@ -30,6 +30,25 @@ pub(super) struct Nominal<'c> {
     lead: usize,
 }
 
+/// A point of the vehicle.
+#[derive(Clone, Copy)]
+struct BodyPoint {
+    unit: usize,
+    /// Metres ahead of the unit's axle.
+    ahead_m: f64,
+    /// Metres to the left of the unit's axis.
+    left_m: f64,
+}
+
+/// A moment of the motion.
+#[derive(Clone, Copy)]
+struct Moment {
+    /// The vertex before it.
+    vertex: usize,
+    /// The share of the step after that vertex.
+    share: f64,
+}
+
 /// A point of the centreline, with its tangent and its curvature.
 #[derive(Clone, Copy)]
 struct CentrelinePoint {
@@ -71,13 +90,13 @@ impl<'c> Nominal<'c> {
             Side::Left => (half_m, &self.corridor.left_m),
             Side::Right => (-half_m, &self.corridor.right_m),
         };
-        let (unit, ahead_m) = (limiting.unit, limiting.point_m);
+        let side = BodyPoint { unit: limiting.unit, ahead_m: limiting.point_m, left_m };
         let wanted = limiting.station as f64;
-        let moment = self.crossing(wanted, (unit, ahead_m, 0.0))?;
-        let (s, _) = self.foot(self.point(moment, (unit, ahead_m, left_m)), wanted)?;
+        let moment = self.crossing(wanted, BodyPoint { left_m: 0.0, ..side })?;
+        let (s, _) = self.foot(self.point(moment, side), wanted)?;
         let s = s.clamp(0.0, (self.corridor.len() - 1) as f64);
-        let moment = self.crossing(s, (unit, ahead_m, left_m))?;
-        let lateral_m = across(self.centreline(s), self.point(moment, (unit, ahead_m, left_m)));
+        let moment = self.crossing(s, side)?;
+        let lateral_m = across(self.centreline(s), self.point(moment, side));
         Some((s * self.corridor.spacing_m, linear(column, s) - lateral_m * left_m.signum()))
     }
 
@@ -86,9 +105,9 @@ impl<'c> Nominal<'c> {
         station as f64 * self.corridor.spacing_m
     }
 
-    /// The moment when a body point (unit, metres ahead of its axle, metres to its left) passes the normal at `s`: the vertex
-    /// before it, and the share of the step after that vertex.
-    fn crossing(&self, s: f64, (unit, ahead_m, left_m): (usize, f64, f64)) -> Option<(usize, f64)> {
+    /// The moment when a body point passes the normal at `s` (in stations).
+    fn crossing(&self, s: f64, body: BodyPoint) -> Option<Moment> {
+        let BodyPoint { unit, ahead_m, left_m } = body;
         let here = self.centreline(s);
         let off = |vertex: usize| along(here, self.poses[vertex][unit].place(ahead_m, left_m));
         let astray = (ASTRAY_PART * self.vehicle.length_m + ASTRAY_M) / self.corridor.spacing_m;
@@ -97,12 +116,13 @@ impl<'c> Nominal<'c> {
             .filter(|&vertex| strays(vertex) <= astray && off(vertex) < 0.0 && off(vertex + 1) >= 0.0)
             .min_by(|&a, &b| strays(a).total_cmp(&strays(b)))?;
         let (a, b) = (off(vertex), off(vertex + 1));
-        Some((vertex, a / (a - b)))
+        Some(Moment { vertex, share: a / (a - b) })
     }
 
-    /// The position of a body point at a moment between two vertices.
-    fn point(&self, (vertex, share): (usize, f64), (unit, ahead_m, left_m): (usize, f64, f64)) -> [f64; 2] {
-        let [p, q] = [vertex, vertex + 1].map(|v| self.poses[v][unit].place(ahead_m, left_m));
+    /// The position of a body point at a moment.
+    fn point(&self, moment: Moment, body: BodyPoint) -> [f64; 2] {
+        let Moment { vertex, share } = moment;
+        let [p, q] = [vertex, vertex + 1].map(|v| self.poses[v][body.unit].place(body.ahead_m, body.left_m));
         [0, 1].map(|i| p[i] + share * (q[i] - p[i]))
     }
 

@@ -73,7 +73,7 @@ impl Corners {
             let model = Model::new(vehicle)?;
             let angles_deg = if self.angle.is_empty() { &CORNER_ANGLES_DEG[..] } else { &self.angle };
             let options = Options::default();
-            let certify = |stop: &_| Ok(Certified::certify(&model, angles_deg, &options, (&session.progress, stop))?);
+            let certify = |stop: &_| Ok(Certified::certify(&model, angles_deg, &options, &session.progress, stop)?);
             let Some(corners) = session.progress.in_time("table of corners", certify)? else {
                 bail!("{}: the vehicle is {:.1} m long; turns are certified up to 60 m", vehicle.id, vehicle.length_m);
             };

@@ -132,7 +132,7 @@ impl Add {
         for line in rows_told(&changed) {
             writeln!(out, "{}", printable(&line))?;
         }
-        for line in changes_told(&changed, self.dry_run) {
+        for line in changes_told(&changed, if self.dry_run { Change::Planned } else { Change::Made }) {
             writeln!(out, "{line}")?;
         }
         if self.dry_run {
@@ -159,7 +159,7 @@ impl Remove {
             writeln!(out, "removed {}", printable(&line(entry)))?;
         }
         writeln!(out, "{} removed", measurements(changed.removed.len()))?;
-        for line in changes_told(&changed, false) {
+        for line in changes_told(&changed, Change::Made) {
             writeln!(out, "{line}")?;
         }
         Ok(out.flush()?)
@@ -231,18 +231,25 @@ fn shown(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
 
+/// Whether a change was made or only looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Change {
+    Made,
+    Planned,
+}
+
 /// What changed in the network and in the certificates.
-fn changes_told(changed: &EvidenceChanged, dry_run: bool) -> Vec<String> {
+fn changes_told(changed: &EvidenceChanged, change: Change) -> Vec<String> {
     if changed.added.is_empty() && changed.removed.is_empty() {
         return vec!["nothing changed".to_owned()];
     }
     let (edges, junctions) = (counted(changed.edges, "directed edge"), counted(changed.junctions, "junction"));
     let mut told = vec![format!(
         "widths or limits of {edges} and kerbs at {junctions} {}",
-        if dry_run { "would change" } else { "changed" }
+        if change == Change::Planned { "would change" } else { "changed" }
     )];
     let [again, turns] = changed.again;
-    if dry_run && again + turns > 0 {
+    if change == Change::Planned && again + turns > 0 {
         let (again, turns) = (counted(again, "directed edge"), counted(turns, "turn"));
         told.push(format!("{again} and {turns} would be certified again for each set of certificates"));
     }

@@ -14,7 +14,7 @@ use crate::cli::arguments::relative::RelativeArgs;
 use crate::cli::arguments::values::{metres, word};
 use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
-use crate::cli::database::on_demand;
+use crate::cli::database::on_demand::{self, Coverage};
 use crate::cli::output::{grouped, printable, results};
 use crate::cli::session::stop::when_stopped;
 
@@ -111,8 +111,8 @@ impl Export {
 
     fn source<'s>(&self, session: &'s Session, path: &Path) -> anyhow::Result<Source<'s>> {
         let database = Database::open(path)?;
-        let required = self.vehicle.required(self.policy.corridor, true, "export");
-        let (database, set) = on_demand::certified(session, (path, database), &required)?;
+        let required = self.vehicle.required(self.policy.corridor, Coverage::EdgesAndTurns, "export");
+        let (database, set) = on_demand::certified(session, path, database, &required)?;
         database.close()?;
         let ask = export::Ask {
             db: path.to_owned(),

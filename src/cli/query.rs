@@ -20,7 +20,7 @@ use crate::cli::arguments::values::{metres, signed_metres, word};
 use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::fleet;
-use crate::cli::database::on_demand;
+use crate::cli::database::on_demand::{self, Coverage};
 use crate::cli::output::rows::{Format, Head, Sink};
 use crate::cli::output::turn_rows;
 use crate::cli::output::{km, results};
@@ -110,11 +110,12 @@ impl Query {
         };
         let path = self.db.path()?;
         let database = Database::open(&path)?;
-        let required = self.vehicle.required(self.policy.corridor, self.turns, "query");
-        let (mut database, set) = on_demand::certified(session, (&path, database), &required)?;
+        let coverage = if self.turns { Coverage::EdgesAndTurns } else { Coverage::Edges };
+        let required = self.vehicle.required(self.policy.corridor, coverage, "query");
+        let (mut database, set) = on_demand::certified(session, &path, database, &required)?;
         let mut compared = None;
         if let Some(id) = &self.relative.relative_to {
-            let (opened, reference) = on_demand::reference(session, (&path, database), &required, (&set, id))?;
+            let (opened, reference) = on_demand::reference(session, &path, database, &required, &set, id)?;
             database = opened;
             compared = Some(ReferenceReader::open(&path, reference, self.time.at)?);
         }
@@ -125,7 +126,7 @@ impl Query {
         let vehicle = fleet::kept(&mut database, &self.vehicle.id)?;
         if self.turns {
             let beside = compared.as_mut().map(ReferenceReader::turns).transpose()?;
-            return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, (area, beside));
+            return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, area, beside);
         }
         let mut beside = compared.as_mut().map(ReferenceReader::edges).transpose()?;
         let options = QueryOptions {
@@ -159,7 +160,8 @@ impl Query {
         database: &mut Database,
         vehicle: Option<&Vehicle>,
         policy: Policy,
-        (area, mut beside): (Option<Area>, Option<Beside<'_>>),
+        area: Option<Area>,
+        mut beside: Option<Beside<'_>>,
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m, needs_at_most_m) = (self.verdict, self.min_rsc, self.needs_at_most);
         let options =

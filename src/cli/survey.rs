@@ -109,12 +109,12 @@ impl Survey {
         session: &Session,
         stop: &Stop,
     ) -> anyhow::Result<Found> {
-        let (limit, work) = (usize::from(self.limit), (&session.progress as _, stop));
+        let (limit, reporter) = (usize::from(self.limit), &session.progress);
         let driver = &inputs.driver;
         if let Some(all) = pairs {
             let pairs = Pairs { all, snap_m: self.snap, tries: usize::from(self.tries) };
             let mut planner = Planner::new(&inputs.roads, Arc::clone(driver), inputs.speeds.clone(), Measure::Time);
-            return Ok(survey_pairs(&mut planner, &pairs, limit, work)?);
+            return Ok(survey_pairs(&mut planner, &pairs, limit, reporter, stop)?);
         }
         let from = match self.from {
             None => Vec::new(),
@@ -123,7 +123,7 @@ impl Survey {
                 snapped.on.iter().map(|on| on.edge).collect()
             }
         };
-        Ok(survey_region(&inputs.roads, driver, &inputs.speeds, &from, limit, work)?)
+        Ok(survey_region(&inputs.roads, driver, &inputs.speeds, &from, limit, reporter, stop)?)
     }
 
     fn sheet_text(&self, path: &Path, inputs: &RoutingInputs, found: &Found) -> anyhow::Result<String> {

@@ -88,8 +88,8 @@ impl PrivateKey {
         let pair = KeypairBytes { secret_key: self.0.to_bytes(), public_key: None };
         let text = pair.to_pkcs8_pem(LineEnding::LF).map_err(|e| KeyError::of(private, e.to_string()))?;
         let public_text = self.public().pem().map_err(|e| KeyError::of(public, e.to_string()))?;
-        write_new(private, text.as_bytes(), true)?;
-        write_new(public, public_text.as_bytes(), false).inspect_err(|_| {
+        write_new(private, text.as_bytes(), Readers::Owner)?;
+        write_new(public, public_text.as_bytes(), Readers::Everybody).inspect_err(|_| {
             let _ = std::fs::remove_file(private);
         })
     }
@@ -184,14 +184,26 @@ fn label_of(pem: &str) -> &str {
     line.strip_prefix(BEGIN).and_then(|rest| rest.strip_suffix("-----")).unwrap_or_default()
 }
 
+/// Who may read a file.
+#[derive(Clone, Copy)]
+enum Readers {
+    Owner,
+    Everybody,
+}
+
 /// Writes a file that must not be there yet.
-fn write_new(path: &Path, bytes: &[u8], secret: bool) -> Result<(), KeyError> {
+fn write_new(path: &Path, bytes: &[u8], readers: Readers) -> Result<(), KeyError> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
     #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, if secret { 0o600 } else { 0o644 });
+    let mode = match readers {
+        Readers::Owner => 0o600,
+        Readers::Everybody => 0o644,
+    };
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, mode);
     #[cfg(not(unix))]
-    let _ = secret;
+    let _ = readers;
     let mut file = options.open(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::AlreadyExists => {
             KeyError::of(path, "there is a file already, and keys are never overwritten; name another file")

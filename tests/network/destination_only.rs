@@ -104,7 +104,8 @@ fn passing_through_has_a_price_if_the_access_says_so() {
     let goal = [Goal { edge: edge("EF"), share: 1.0 }];
     let cost = |pass_through: u64| {
         let access = Access { pass_through, ..graph.open_access() };
-        let found = search(&graph, &access, &[Start::new(edge("AB"), 0.0)], &goal, true, &Stop::never());
+        let found =
+            search(&graph, &access, &[Start::new(edge("AB"), 0.0)], &goal, SearchExtent::NearestGoal, &Stop::never());
         found.unwrap().remove(0).map(|found| found.cost)
     };
     assert_eq!(cost(BARRED), None);

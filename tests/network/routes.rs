@@ -139,7 +139,9 @@ fn wide_open(graph: &Graph) -> Access {
 
 fn shortest(graph: &Graph, access: &Access, from: u32, to: u32) -> Option<u64> {
     let goal = [Goal { edge: to, share: 1.0 }];
-    let found = search(graph, access, &[Start::new(from, 0.0)], &goal, true, &Stop::never()).unwrap().remove(0)?;
+    let found = search(graph, access, &[Start::new(from, 0.0)], &goal, SearchExtent::NearestGoal, &Stop::never())
+        .unwrap()
+        .remove(0)?;
     let edges = &found.drive.edges;
     let sum: u64 = edges.iter().map(|&edge| graph.cost(edge)).sum();
     assert_eq!(sum, found.cost, "the way costs what it says");
@@ -267,7 +269,14 @@ fn a_slow_short_road_loses_to_a_fast_long_one() {
         let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), measure);
         let [from, to] = ends.map(|ends| ascii_map::edge(&roads.network, ends));
         let goal = [Goal { edge: to, share: 1.0 }];
-        let found = search(&graph, &graph.open_access(), &[Start::new(from, 0.0)], &goal, true, &Stop::never());
+        let found = search(
+            &graph,
+            &graph.open_access(),
+            &[Start::new(from, 0.0)],
+            &goal,
+            SearchExtent::NearestGoal,
+            &Stop::never(),
+        );
         let edges = found.unwrap().remove(0).unwrap().drive.edges;
         let road = roads.network.road(&roads.network.edges[edges[1] as usize]);
         let straight = (0..).zip(&roads.network.edges).find(|(_, edge)| edge.road == 1).unwrap().0;

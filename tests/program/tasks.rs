@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use netcert::osm::facts::{Countries, Policy};
 use netcert::pipeline::{
-    Assemble, Divided, EDGES_AT_ONCE, Ingest, RunError, Selection, Summary, Task, TaskError, TaskJob, TaskResult,
-    assemble, divide, ingest,
+    Assemble, Divided, EDGES_AT_ONCE, Ingest, NeededTasks, RunError, Selection, Summary, Task, TaskError, TaskJob,
+    TaskResult, assemble, divide, ingest,
 };
 use netcert::reporter::Silent;
 use netcert::settings::Settings;
@@ -65,8 +65,8 @@ fn results(tasks: &[Task], job: &str, fails: &[u32]) -> Vec<TaskResult> {
         let around = task.needs.iter().chain([&task.number]);
         let verdicts: Vec<&[u8]> =
             around.clone().filter_map(|&need| strokes[need as usize].as_ref()).map(|done| &done.verdicts[..]).collect();
-        let incomplete = verdicts.len() < around.count();
-        let turns = done.as_ref().map(|_| job.turns(&task.bytes, &verdicts, incomplete, &Stop::never()).unwrap());
+        let needed = if verdicts.len() < around.count() { NeededTasks::SomeFailed } else { NeededTasks::Done };
+        let turns = done.as_ref().map(|_| job.turns(&task.bytes, &verdicts, needed, &Stop::never()).unwrap());
         results.push(TaskResult { part: (Stage::Turns, task.number), work: turns });
     }
     let part = |(task, done): (&Task, Option<netcert::pipeline::StrokesDone>)| TaskResult {
@@ -171,9 +171,9 @@ fn what_is_missing_foreign_or_damaged_is_refused_by_name() {
         assert!(matches!(done, Err(TaskError::Damaged { what: "task", .. })));
     }
     let own = job.strokes(&tasks[0].bytes, &Stop::never()).unwrap();
-    let alone = job.turns(&tasks[0].bytes, &[], false, &Stop::never());
+    let alone = job.turns(&tasks[0].bytes, &[], NeededTasks::Done, &Stop::never());
     assert!(matches!(alone, Err(TaskError::NoVerdict { task: 0, .. })));
-    assert!(job.turns(&tasks[0].bytes, &[&own.verdicts[..1]], false, &Stop::never()).is_err());
+    assert!(job.turns(&tasks[0].bytes, &[&own.verdicts[..1]], NeededTasks::Done, &Stop::never()).is_err());
     let foreign = text.replacen(concat!(env!("CARGO_PKG_VERSION"), "+"), "0.0.9+", 1);
     assert!(matches!(TaskJob::read(&foreign), Err(TaskError::OtherProgram { what: "job", .. })));
     let told = Stop::never();

@@ -43,7 +43,8 @@ impl Corners {
         model: &Model,
         angles_deg: &[f64],
         options: &Options,
-        (reporter, stop): (&dyn Reporter, &Stop),
+        reporter: &dyn Reporter,
+        stop: &Stop,
     ) -> Result<Option<Self>, Stopped> {
         let Some(reach) = Reach::of(&model.vehicle) else { return Ok(None) };
         reporter.begin("corners", angles_deg.len() as u64);
@@ -120,7 +121,7 @@ mod tests {
 
     fn table(id: &str, angles_deg: &[f64]) -> Corners {
         let model = Model::new(Catalogue::builtin().unwrap().get(id).unwrap()).unwrap();
-        let certified = Corners::certify(&model, angles_deg, &Options::default(), (&Silent, &Stop::never()));
+        let certified = Corners::certify(&model, angles_deg, &Options::default(), &Silent, &Stop::never());
         certified.unwrap().unwrap()
     }
 
@@ -147,7 +148,7 @@ mod tests {
     #[test]
     fn a_stopped_table_is_none() {
         let model = Model::new(Catalogue::builtin().unwrap().get("US-WB40").unwrap()).unwrap();
-        let stopped = Corners::certify(&model, &[90.0], &Options::default(), (&Silent, &Stop::after(3)));
+        let stopped = Corners::certify(&model, &[90.0], &Options::default(), &Silent, &Stop::after(3));
         assert_eq!(stopped, Err(Stopped));
     }
 }

@@ -250,7 +250,7 @@ impl<'w> Widened<'w> {
 /// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `stroke` is an index
 /// into [`Network::strokes`]. `None` if no width up to 8 m more would do.
 #[must_use]
-pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, settings: &Settings) -> Option<f64> {
+pub fn edge_need(network: &Network, stroke: u32, edge: u32, model: &Model, settings: &Settings) -> Option<f64> {
     let stroke = network.strokes.get(stroke as usize)?;
     let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor).ok()?;
     let span = made.spans.iter().find(|span| span.edge == edge && span.unknown.is_none())?;

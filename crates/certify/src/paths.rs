@@ -52,18 +52,60 @@ impl Best {
     }
 }
 
-/// As [`best_of`], with the plan.
-pub(super) fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
-    let (mut planner, grounds) = (Planner::new(made), Grounds::default());
-    models.iter().map(|model| best_path((made, &grounds), &mut planner, model, options)).collect()
+/// The corridors of a turn, with the grounds that the certificates of its paths share.
+pub(super) struct LaidTurn<'m> {
+    made: &'m TurnCorridors,
+    grounds: Grounds,
 }
 
-fn best_path(
-    (made, grounds): (&TurnCorridors, &Grounds),
-    planner: &mut Planner<'_>,
-    model: &Model,
-    options: &Options,
-) -> Option<Best> {
+impl<'m> LaidTurn<'m> {
+    pub(super) fn new(made: &'m TurnCorridors) -> Self {
+        Self { made, grounds: Grounds::default() }
+    }
+
+    /// Certifies a path as planned, then with the options `corrected`, whose corrections may steer more sharply. Keeps the better result.
+    /// Paths that are known to have less leeway than `above_m` may be left out.
+    pub(super) fn try_path(
+        &self,
+        planned: Planned,
+        model: &Model,
+        corrected: Option<&Options>,
+        above_m: f64,
+        best: &mut Option<Best>,
+    ) {
+        let Some(path) = self.made.path(planned.code) else { return };
+        let Some(course) = Course::new(&path.corridor, model, &path.counted, &self.grounds) else { return };
+        let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+        let believed_m = planned.room_m + BELIEF_M;
+        for options in [Some(&plain), corrected].into_iter().flatten() {
+            let above_m = best.as_ref().map_or(above_m, |best| best.beaten_above_m().max(above_m));
+            let Some(row) = course.certify(options, above_m, believed_m) else { continue };
+            let Some(result) = row.spans.into_iter().next() else { continue };
+            if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
+                *best = Some(Best { path: path.clone(), result, plan: row.plan });
+            }
+            if best.as_ref().is_some_and(Best::suffices) {
+                return;
+            }
+        }
+    }
+
+    /// Certifies the path of a plan, with its corrections, on other roads.
+    pub(super) fn follow_path(&self, known: &Best, model: &Model, best: &mut Option<Best>) {
+        let Some(path) = self.made.path(known.path.code) else { return };
+        let Some(course) = Course::new(&path.corridor, model, &path.counted, &self.grounds) else { return };
+        let Some(row) = course.follow(&known.plan) else { return };
+        *best = row.spans.into_iter().next().map(|result| Best { path: path.clone(), result, plan: row.plan });
+    }
+}
+
+/// As [`best_of`], with the plan.
+pub(super) fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
+    let (mut planner, turn) = (Planner::new(made), LaidTurn::new(made));
+    models.iter().map(|model| best_path(&turn, &mut planner, model, options)).collect()
+}
+
+fn best_path(turn: &LaidTurn<'_>, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
     let mut best: Option<Best> = None;
     let mut tried: Vec<i64> = Vec::new();
     for planned in planner.plan(&model.vehicle) {
@@ -72,7 +114,7 @@ fn best_path(
             break;
         }
         tried.push(planned.code);
-        try_path((made, grounds), planned, model, (hope.then_some(options), f64::NEG_INFINITY), &mut best);
+        turn.try_path(planned, model, hope.then_some(options), f64::NEG_INFINITY, &mut best);
         // Paths come by their score. On Heidelberg a later one was better for a fifth of the safe turns, by 1.4 cm for one in ten.
         if best.as_ref().is_some_and(|best| best.result.safe()) {
             return best;
@@ -82,7 +124,7 @@ fn best_path(
         let seeds = planner.best_seeds(&model.vehicle, MORE_SEEDS);
         for planned in seeds.iter().filter(|p| !tried.contains(&p.code)).take(MORE_PATHS) {
             // A path without room does not help any more.
-            try_path((made, grounds), *planned, model, (Some(options), 0.0), &mut best);
+            turn.try_path(*planned, model, Some(options), 0.0, &mut best);
             if best.as_ref().is_some_and(|best| best.result.safe()) {
                 break;
             }
@@ -95,50 +137,11 @@ fn best_path(
 #[must_use]
 pub fn fits(made: &TurnCorridors, model: &Model, options: &Options) -> bool {
     let seeds = Planner::new(made).best_seeds(&model.vehicle, SEEDS);
-    let (mut best, grounds) = (None, Grounds::default());
+    let (mut best, turn) = (None, LaidTurn::new(made));
     seeds.iter().filter(|seed| seed.score_m >= -NEARLY_M).any(|seed| {
-        try_path((made, &grounds), *seed, model, (Some(options), 0.0), &mut best);
+        turn.try_path(*seed, model, Some(options), 0.0, &mut best);
         best.as_ref().is_some_and(|best| best.result.safe())
     })
-}
-
-/// Certifies a path as planned, then with corrections, which may steer more sharply. Keeps the better result. Paths that are known to have
-/// less leeway than `above_m` may be left out.
-pub(super) fn try_path(
-    (made, grounds): (&TurnCorridors, &Grounds),
-    planned: Planned,
-    model: &Model,
-    (corrected, above_m): (Option<&Options>, f64),
-    best: &mut Option<Best>,
-) {
-    let Some(path) = made.path(planned.code) else { return };
-    let Some(course) = Course::new(&path.corridor, model, &path.counted, grounds) else { return };
-    let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
-    let believed_m = planned.room_m + BELIEF_M;
-    for options in [Some(&plain), corrected].into_iter().flatten() {
-        let above_m = best.as_ref().map_or(above_m, |best| best.beaten_above_m().max(above_m));
-        let Some(row) = course.certify(options, above_m, believed_m) else { continue };
-        let Some(result) = row.spans.into_iter().next() else { continue };
-        if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
-            *best = Some(Best { path: path.clone(), result, plan: row.plan });
-        }
-        if best.as_ref().is_some_and(Best::suffices) {
-            return;
-        }
-    }
-}
-
-/// Certifies the path of a plan, with its corrections, on other roads.
-pub(super) fn follow_path(
-    (made, grounds): (&TurnCorridors, &Grounds),
-    known: &Best,
-    model: &Model,
-    best: &mut Option<Best>,
-) {
-    let Some(path) = made.path(known.path.code) else { return };
-    let Some(course) = Course::new(&path.corridor, model, &path.counted, grounds) else { return };
-    let Some(row) = course.follow(&known.plan) else { return };
-    *best = row.spans.into_iter().next().map(|result| Best { path: path.clone(), result, plan: row.plan });
 }
 
 /// Orders results: safe first, then closed bounds, then the greater RSC. Ties keep the first one.

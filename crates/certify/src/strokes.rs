@@ -172,7 +172,7 @@ pub fn make_strokes<E: Send>(
     for batch in strokes.chunks(together * GROUPS * rayon::current_num_threads()) {
         let made = batch.par_chunks(together).enumerate().map(|(group, some)| {
             let first = (before + group * together) as u64 + 1;
-            let (made, ended) = in_time(job, some, (first, strokes.len() as u64));
+            let (made, ended) = in_time(job, some, first, strokes.len() as u64);
             // What took too long is tried again by the next run.
             if ended { Ok(made) } else { keep(&made).map(|()| made) }
         });
@@ -190,9 +190,9 @@ pub fn make_strokes<E: Send>(
 /// A stroke with its index in the network.
 type Numbered<'n> = (u32, &'n Stroke);
 
-/// The results of some strokes, and whether one of them took too long. The strokes of a group that takes too long are certified one by one,
-/// so that only those that do so by themselves have no certificate.
-fn in_time(job: &Job<'_>, strokes: &[Numbered<'_>], (number, of): (u64, u64)) -> (Vec<StrokeMade>, bool) {
+/// The results of some strokes, the first of which is number `number` of `of`, and whether one of them took too long. The strokes of a group
+/// that takes too long are certified one by one, so that only those that do so by themselves have no certificate.
+fn in_time(job: &Job<'_>, strokes: &[Numbered<'_>], number: u64, of: u64) -> (Vec<StrokeMade>, bool) {
     let edge = strokes.first().and_then(|(_, stroke)| job.network.stroke_edges.get(stroke.edges.start as usize));
     let edge = edge.map(|&edge| job.network.edges[edge as usize].id);
     let what = if strokes.len() == 1 { "stroke" } else { "strokes from" };
@@ -203,7 +203,7 @@ fn in_time(job: &Job<'_>, strokes: &[Numbered<'_>], (number, of): (u64, u64)) ->
                 if strokes.len() == 1 {
                     vec![without_corridor(job, *stroke, UnknownReason::TookTooLong)]
                 } else {
-                    in_time(job, std::slice::from_ref(stroke), (number + i as u64, of)).0
+                    in_time(job, std::slice::from_ref(stroke), number + i as u64, of).0
                 }
             };
             (strokes.iter().enumerate().flat_map(alone).collect(), true)
@@ -249,7 +249,7 @@ fn with_corridor(job: &Job<'_>, stroke: u32, made: &StrokeCorridor, rows: &[Plan
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
-            let verdict = verdict((job.network, edge), &job.models[vehicle], span.unknown, Some(result));
+            let verdict = verdict(job.network, edge, &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
             let conclusion = Conclusion { verdict, measured };
             Some((vehicle as u32, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
@@ -314,7 +314,7 @@ fn without_corridor(job: &Job<'_>, (number, stroke): Numbered<'_>, reason: Unkno
     let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
     let of_vehicle = |(vehicle, model)| {
         edges.iter().map(move |&edge| {
-            let verdict = verdict((network, &network.edges[edge as usize]), model, Some(reason), None);
+            let verdict = verdict(network, &network.edges[edge as usize], model, Some(reason), None);
             (vehicle, EdgeCertificate::bare(edge, verdict))
         })
     };
@@ -342,7 +342,8 @@ fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Opti
 
 /// Combines the verdicts. A prohibition comes first, then a missing corridor. An unreadable limit only replaces `safe`.
 pub fn verdict(
-    (network, edge): (&Network, &Edge),
+    network: &Network,
+    edge: &Edge,
     model: &Model,
     unknown: Option<UnknownReason>,
     result: Option<&SpanResult>,

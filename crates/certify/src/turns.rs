@@ -11,14 +11,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::narrower::{self, MeasuredWidths, Narrower};
 use super::needs::TurnCase;
-use super::paths::{Best, best_planned, follow_path, try_path};
+use super::paths::{Best, LaidTurn, best_planned};
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnMade, TurnNeed};
 use crate::settings::{Needs, Settings};
-use crate::stet::{Grounds, Model, SpanResult};
+use crate::stet::{Model, SpanResult};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
@@ -160,7 +160,7 @@ pub fn make_turns<E: Send>(
         let mut made = made.collect::<Result<Vec<_>, E>>()?;
         let again: Vec<_> = made.iter_mut().filter_map(|made| Some((measured_m(made)?, made))).collect();
         if !again.is_empty() {
-            plan_narrower(job, again, (&strokes, &lines), keep)?;
+            plan_narrower(job, again, &strokes, &lines, keep)?;
         }
         made.into_iter().try_for_each(&mut sink)?;
         done += batch.len() as u64;
@@ -285,7 +285,8 @@ fn lacks_m(made: &TurnMade) -> Option<f64> {
 fn plan_narrower<E: Send>(
     job: &TurnJob<'_>,
     mut again: Vec<(f32, &mut TurnMade)>,
-    (strokes, lines): (&[u32], &Lines),
+    strokes: &[u32],
+    lines: &Lines,
     keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
 ) -> Result<(), E> {
     let mut narrower = Narrower::new(job.network);
@@ -301,7 +302,7 @@ fn plan_narrower<E: Send>(
         again.par_iter_mut().filter(|turn| tried(turn)).for_each(|(_, made)| {
             let work = Work { what: "turn", number: u64::from(made.turn) + 1, of: job.turns.len() as u64, edge: None };
             // A turn that takes too long keeps what is known of it.
-            let better = watch::guarded(work, watch::patience(), || plan_as_on((job, &there), made, strokes, lines));
+            let better = watch::guarded(work, watch::patience(), || plan_as_on(job, &there, made, strokes, lines));
             for (vehicle, certificate) in better.unwrap_or_default() {
                 made.certificates[vehicle] = certificate;
             }
@@ -312,7 +313,8 @@ fn plan_narrower<E: Send>(
 
 /// The certificates, by vehicle, of the paths that nearly fit on a narrower road and are safe here.
 fn plan_as_on(
-    (job, narrower): (&TurnJob<'_>, &TurnJob<'_>),
+    job: &TurnJob<'_>,
+    narrower: &TurnJob<'_>,
     made: &TurnMade,
     strokes: &[u32],
     lines: &Lines,
@@ -351,12 +353,12 @@ fn plan_as_on(
             let Some(found) = found.filter(|found| found.result.safe() || found.nearly_fits()) else { continue };
             let wide = wide.get_or_insert_with(|| turn_on(job.network, over, &here, policy, params, reach));
             let Ok(wide) = wide else { break };
-            let (mut best, grounds) = (None, Grounds::default());
+            let (mut best, wide) = (None, LaidTurn::new(wide));
             let planned = Planned { code: found.path.code, score_m: 0.0, room_m: 0.0 };
-            let how = (Some(&job.settings.stet), f64::NEG_INFINITY);
-            follow_path((wide, &grounds), &found, &job.models[v], &mut best);
+            wide.follow_path(&found, &job.models[v], &mut best);
             if !best.as_ref().is_some_and(|best| best.result.safe()) {
-                try_path((wide, &grounds), planned, &job.models[v], how, &mut best);
+                let options = Some(&job.settings.stet);
+                wide.try_path(planned, &job.models[v], options, f64::NEG_INFINITY, &mut best);
             }
             if best.as_ref().is_some_and(|best| best.result.safe()) {
                 better.push((v, at_its_times(job, turn, v, certificate(made.turn, best))));

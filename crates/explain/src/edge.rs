@@ -41,7 +41,7 @@ pub fn explain_edge(
         Ok(case) => (case.geometry(model, &settings.stet, stop)?, case.unknown()),
         Err(reason) => (None, Some(*reason)),
     };
-    let verdict = verdict((network, facts), model, unknown, geometry.as_ref().map(|g| &g.result));
+    let verdict = verdict(network, facts, model, unknown, geometry.as_ref().map(|g| &g.result));
     let geometry = geometry.filter(|_| unknown.is_none());
     let mut hints = Hints::default();
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
@@ -142,7 +142,7 @@ pub(super) fn edge_verdict(
         Err(reason) => (None, Some(reason)),
     };
     stop.check()?;
-    Ok(Some(verdict((network, facts), model, unknown, result.as_ref())))
+    Ok(Some(verdict(network, facts, model, unknown, result.as_ref())))
 }
 
 /// The geometry of one span of a corridor, from the certificate of the whole corridor.

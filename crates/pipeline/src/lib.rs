@@ -1,6 +1,6 @@
 //! Runs the stages in order: read, network, corridors and certificates, store.
 //!
-//! [`ingest`] makes a database from an extract. [`certify()`] adds or replaces certificates in an existing database. Both run the
+//! [`ingest()`] makes a database from an extract. [`certify()`] adds or replaces certificates in an existing database. Both run the
 //! same stages on the same network, so the same edge and vehicle get the same bytes. [`netcert_certify`] makes the certificates.
 //! Progress is reported through [`Reporter`](reporter::Reporter), so this module does not depend on command lines or terminals.
 //!
@@ -64,6 +64,6 @@ pub use roads::{EDGES_AT_ONCE, read_network};
 pub use select::{Selection, own_countries, selected};
 pub use summary::{StageSummary, Summary};
 pub use task_results::TaskResult;
-pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, StrokesDone, Task, TaskError, divide};
+pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, NeededTasks, StrokesDone, Task, TaskError, divide};
 pub use update::{Newer, Update, run_of_extract, update};
 pub use vehicle_record::record;

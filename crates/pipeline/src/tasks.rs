@@ -160,6 +160,15 @@ struct Written {
     vehicles: Vec<String>,
 }
 
+/// How far the tasks are done whose verdicts the turns of one task need ([`Task::needs`], and the task itself).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NeededTasks {
+    /// All are done: an edge without a verdict is an error.
+    Done,
+    /// One of them failed: edges without a verdict are unknown.
+    SomeFailed,
+}
+
 /// What is done of a task's edges.
 pub struct StrokesDone {
     /// The certificates, for [`super::assemble`].
@@ -229,12 +238,18 @@ impl Job {
         Ok(StrokesDone { work: packed(&((Stage::Strokes, number), done))?, verdicts: packed(&verdicts)? })
     }
 
-    /// Certifies the turns that a task owns. `verdicts` are those of the task itself and of all that it needs. `incomplete`: one of these tasks
-    /// failed, so that edges without a verdict are unknown.
+    /// Certifies the turns that a task owns. `verdicts` are those of the task itself and of all that it needs, and `needed` says how far these
+    /// tasks are done.
     ///
     /// # Errors
     /// As [`Job::strokes`]; or an edge has no verdict, and none of the tasks failed.
-    pub fn turns(&self, task: &[u8], verdicts: &[&[u8]], incomplete: bool, stop: &Stop) -> Result<Vec<u8>, TaskError> {
+    pub fn turns(
+        &self,
+        task: &[u8],
+        verdicts: &[&[u8]],
+        needed: NeededTasks,
+        stop: &Stop,
+    ) -> Result<Vec<u8>, TaskError> {
         let (number, portion) = unpacked(task)?;
         let network = &portion.network;
         let mut known: FxHashMap<u32, Vec<Verdict>> = FxHashMap::default();
@@ -250,7 +265,7 @@ impl Job {
             let Some(of_edge) = known.get(&portion.edge(local as u32)) else { continue };
             edges.iter_mut().zip(of_edge).for_each(|(edges, verdict)| edges[local] = *verdict);
         }
-        for turn in turns.iter().filter(|_| !incomplete) {
+        for turn in turns.iter().filter(|_| needed == NeededTasks::Done) {
             let met =
                 turn.through.iter().chain([&turn.movement.from, &turn.movement.to]).map(|&edge| portion.edge(edge));
             if let Some(edge) = met.into_iter().find(|edge| !known.contains_key(edge)) {

@@ -74,7 +74,7 @@ impl Planner {
                     found.drive = drive;
                     let kerbs = &self.driver.permits.settings.kerbs;
                     let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
-                    let route = self.route(&found, (start, end), certified);
+                    let route = self.route(&found, start, end, certified);
                     return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                 }
                 Err(Unfit(places)) => {

@@ -100,15 +100,30 @@ impl Made {
     }
 }
 
+/// The edges before and after a turn or passage, which tell it from every other one of a way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TurnEnds {
+    /// The edge that the vehicle comes from.
+    pub from: u32,
+    /// The edge that the vehicle goes into.
+    pub to: u32,
+}
+
+impl TurnEnds {
+    fn of(movement: &Movement) -> Self {
+        Self { from: movement.from, to: movement.to }
+    }
+}
+
 /// By turn, the code of its chosen path. A turn that is missing has its best path.
-pub(super) type Choices = FxHashMap<(u32, u32), i64>;
+pub(super) type Choices = FxHashMap<TurnEnds, i64>;
 
 /// Chooses the path of each turn: the best one, until another is requested.
 pub struct Menu {
     turns: Box<dyn Turns>,
-    made: FxHashMap<(u32, u32), Made>,
+    made: FxHashMap<TurnEnds, Made>,
     /// Paths asked for by their place among those that count, and by their code.
-    places: FxHashMap<(u32, u32), usize>,
+    places: FxHashMap<TurnEnds, usize>,
     codes: Choices,
     /// What was chosen last.
     chosen: Choices,
@@ -129,8 +144,8 @@ impl Menu {
 
     /// Forgets turns of which this holds, by the edges before and after them.
     pub(super) fn forget(&mut self, changed: impl Fn(u32, u32) -> bool) {
-        self.made.retain(|&(from, to), _| !changed(from, to));
-        self.places.retain(|&(from, to), _| !changed(from, to));
+        self.made.retain(|ends, _| !changed(ends.from, ends.to));
+        self.places.retain(|ends, _| !changed(ends.from, ends.to));
     }
 
     /// Resets every turn to its best path.
@@ -148,7 +163,7 @@ impl Menu {
         movement: &Movement,
         arcs: &[u32],
     ) -> Result<Arc<TurnPiece>, UnknownReason> {
-        let key = (movement.from, movement.to);
+        let key = TurnEnds::of(movement);
         let turns = self.turns.as_ref();
         let made = self.made.entry(key).or_default();
         let place = self.places.get(&key).copied();
@@ -188,11 +203,11 @@ impl Menu {
     }
 
     /// Chooses the next pair of paths for two successive turns. Returns whether there is one.
-    pub fn another_pair(&mut self, before: (u32, u32), after: (u32, u32)) -> bool {
-        if self.another(after.0, after.1) {
+    pub fn another_pair(&mut self, before: TurnEnds, after: TurnEnds) -> bool {
+        if self.another(after) {
             return true;
         }
-        let there = before != after && self.another(before.0, before.1);
+        let there = before != after && self.another(before);
         if there {
             self.places.insert(after, 0);
         }
@@ -201,24 +216,23 @@ impl Menu {
 
     /// Makes all paths of a turn, so that another one can be chosen.
     pub(super) fn make_all(&mut self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
-        let made = self.made.entry((movement.from, movement.to)).or_default();
+        let made = self.made.entry(TurnEnds::of(movement)).or_default();
         made.make_all(self.turns.as_ref(), strokes, movement, arcs);
     }
 
     /// Chooses the next of the paths that were made of a turn. Returns whether there is one.
-    pub fn another(&mut self, from: u32, to: u32) -> bool {
-        let key = (from, to);
-        let paths = self.made.get(&key).map_or(&[][..], Made::counted);
+    pub fn another(&mut self, turn: TurnEnds) -> bool {
+        let paths = self.made.get(&turn).map_or(&[][..], Made::counted);
         let of_code = |code: &i64| paths.iter().position(|piece| piece.code == *code);
-        let next = match (self.places.get(&key), self.codes.get(&key)) {
+        let next = match (self.places.get(&turn), self.codes.get(&turn)) {
             (Some(&place), _) => place + 1,
             // A path that does not count comes before all that do.
             (None, Some(code)) => of_code(code).map_or(0, |place| place + 1),
             (None, None) => 1,
         };
         let Some(piece) = paths.get(next) else { return false };
-        self.chosen.insert(key, piece.code);
-        self.places.insert(key, next);
+        self.chosen.insert(turn, piece.code);
+        self.places.insert(turn, next);
         true
     }
 }

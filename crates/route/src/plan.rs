@@ -221,11 +221,11 @@ impl Planner {
     ) -> Result<(Option<Route>, Vec<Refutation>), Stopped> {
         let way = Way { drive: &found.drive, start, end };
         let (certified, failed) = self.whole.on_any_paths(&way, tries, &self.stop)?;
-        Ok((certified.map(|certified| self.route(found, (start, end), certified)), failed))
+        Ok((certified.map(|certified| self.route(found, start, end, certified)), failed))
     }
 
-    /// The route on a way that was certified.
-    pub(super) fn route(&self, found: &Found, (start, end): (f64, f64), certified: Certified) -> Route {
+    /// The route on a way that was certified, from the share `start` of its first edge to the share `end` of its last.
+    pub(super) fn route(&self, found: &Found, start: f64, end: f64, certified: Certified) -> Route {
         let Certified { path, certificate } = certified;
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;

@@ -58,7 +58,16 @@ const STATES: usize = 4096;
 /// The value for no state and no start.
 const NONE: u32 = u32::MAX;
 
-/// The shortest way to each goal, or `None`. With `any`, only the way to the nearest goal is guaranteed to be the shortest.
+/// How far a search goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SearchExtent {
+    /// To the nearest goal. Ways to other goals may not be the shortest.
+    NearestGoal,
+    /// To every goal.
+    EveryGoal,
+}
+
+/// The shortest way to each goal up to which the search goes, or `None`.
 ///
 /// # Errors
 /// `stop` was told. It is checked every few thousand states.
@@ -67,14 +76,14 @@ pub fn search(
     access: &Access,
     starts: &[Start],
     goals: &[Goal],
-    any: bool,
+    extent: SearchExtent,
     stop: &Stop,
 ) -> Result<Vec<Option<Found>>, Stopped> {
     let mut search = Search::new(graph, access, goals);
     for (i, start) in starts.iter().enumerate() {
         search.begin(i, start);
     }
-    search.run(any, stop)?;
+    search.run(extent, stop)?;
     Ok(search.best.iter().map(|best| best.as_ref().map(|best| search.found(best))).collect())
 }
 
@@ -133,7 +142,7 @@ impl<'g> Search<'g> {
         self.reach(state, Reached { cost, before: NONE, start: number as u32, passage: NO_PASSAGE });
     }
 
-    fn run(&mut self, any: bool, stop: &Stop) -> Result<(), Stopped> {
+    fn run(&mut self, extent: SearchExtent, stop: &Stop) -> Result<(), Stopped> {
         let mut popped = 0_usize;
         while let Some(Reverse((cost, state))) = self.queue.pop() {
             if popped.is_multiple_of(STATES) {
@@ -145,7 +154,10 @@ impl<'g> Search<'g> {
                 continue;
             }
             let bests = self.best.iter().map(|best| best.as_ref().map_or(BARRED, |best| best.cost));
-            let limit = if any { bests.min() } else { bests.max() };
+            let limit = match extent {
+                SearchExtent::NearestGoal => bests.min(),
+                SearchExtent::EveryGoal => bests.max(),
+            };
             if limit.is_some_and(|limit| cost > limit) {
                 break;
             }
@@ -219,7 +231,8 @@ pub fn search_over(
     let mut first: Vec<usize> = (0..starts.len()).collect();
     for (leg, goals) in places.iter().enumerate() {
         let last = leg + 1 == places.len();
-        let found = search(graph, access, &starts, goals, last, stop)?;
+        let extent = if last { SearchExtent::NearestGoal } else { SearchExtent::EveryGoal };
+        let found = search(graph, access, &starts, goals, extent, stop)?;
         let mut next = Vec::new();
         for (goal, found) in goals.iter().zip(found) {
             let Some(found) = found else { continue };

@@ -83,11 +83,13 @@ impl Standings {
     pub fn stored(database: &mut Database, vehicle: &str, policy: Policy) -> Result<Self, StoreError> {
         let mut out = Self::default();
         for row in database.edge_standings(vehicle, policy)? {
-            put(&mut out.edges, row?);
+            let (edge, standing) = row?;
+            put(&mut out.edges, edge, standing);
         }
         let mut turns = Vec::new();
         for row in database.turn_standings(vehicle, policy)? {
-            put(&mut turns, row?);
+            let (turn, standing) = row?;
+            put(&mut turns, turn, standing);
         }
         for step in database.turn_steps(vehicle, policy)? {
             let step = step?;
@@ -99,7 +101,7 @@ impl Standings {
 }
 
 /// Puts a standing at its index. Sets are complete, so nothing is left between; if it were, nothing would be known there.
-fn put(all: &mut Vec<Standing>, (index, standing): (u32, Standing)) {
+fn put(all: &mut Vec<Standing>, index: u32, standing: Standing) {
     all.resize(all.len().max(index as usize + 1), Standing::bare(Verdict::Unknown(UnknownReason::Geometry)));
     if let Some(slot) = all.get_mut(index as usize) {
         *slot = standing;
@@ -114,7 +116,8 @@ impl Peer {
     pub fn stored(
         database: &mut Database,
         set: &CertifiedSet,
-        (reference, vehicle): (&Reference, &Vehicle),
+        reference: &Reference,
+        vehicle: &Vehicle,
     ) -> Result<Self, NoDriver> {
         reference.check_turns(database)?;
         let own = Standings::stored(database, &set.vehicle_id, set.policy)?;

@@ -8,7 +8,7 @@ use super::assemble::{AssemblyError, PartKind, RoutePart, RoutePath, Way, assemb
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
-use super::pieces::{Choices, Menu, Strokes, Turns};
+use super::pieces::{Choices, Menu, Strokes, TurnEnds, Turns};
 use super::roads::Roads;
 use crate::corridor::Corridor;
 use crate::network::offset_m;
@@ -105,7 +105,7 @@ impl Whole {
             let another = match (&refutation.assembly, refutation.at) {
                 // All pairs of paths of the two turns were tried.
                 (Some(AssemblyError::Overlap { .. }), _) => false,
-                (_, at) => self.make_all(way.drive, at).is_some_and(|(from, to)| self.menu.another(from, to)),
+                (_, at) => self.make_all(way.drive, at).is_some_and(|turn| self.menu.another(turn)),
             };
             let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
             if refutation.assembly.is_none() || !goes_on {
@@ -156,18 +156,18 @@ impl Whole {
     /// Chooses the next path of a turn of a way. Returns whether there is one.
     pub(super) fn another(&mut self, drive: &Drive, at: PartKind, choices: &mut Choices) -> bool {
         self.menu.choose(choices);
-        let another = self.make_all(drive, at).is_some_and(|(from, to)| self.menu.another(from, to));
+        let another = self.make_all(drive, at).is_some_and(|turn| self.menu.another(turn));
         choices.clone_from(self.menu.choices());
         another
     }
 
-    /// Makes all paths of a turn of a way. Returns the edges before and after the turn. `None` if the way has no such turn.
-    fn make_all(&mut self, drive: &Drive, at: PartKind) -> Option<(u32, u32)> {
+    /// Makes all paths of a turn of a way. Returns the turn's ends. `None` if the way has no such turn.
+    fn make_all(&mut self, drive: &Drive, at: PartKind) -> Option<TurnEnds> {
         let PartKind::Turn { from, to } = at else { return None };
         let join = drive.joins().find(|join| (join.from, join.to) == (from, to))?;
         let movement = movement(&self.roads.movements, from, join.arcs, to)?;
         self.menu.make_all(&mut self.strokes, &movement, join.arcs);
-        Some((from, to))
+        Some(TurnEnds { from, to })
     }
 
     /// Joins the pieces of a way. If two turns overlap, their other paths are tried.

@@ -10,7 +10,7 @@ use netcert::vehicle::Vehicle;
 
 use crate::cli::arguments::values::{local_time, word};
 use crate::cli::database::fleet::{self, Fleet};
-use crate::cli::database::on_demand::RequiredSet;
+use crate::cli::database::on_demand::{Coverage, RequiredSet};
 
 #[derive(Args)]
 pub(crate) struct VehicleArgs {
@@ -41,8 +41,13 @@ pub(crate) struct TimeArgs {
 
 impl VehicleArgs {
     /// The vehicle's certificates, for a verb that makes them if they are missing.
-    pub(crate) fn required(&self, policy: Option<Policy>, turns: bool, command: &'static str) -> RequiredSet<'_> {
-        RequiredSet { vehicle: &self.id, files: &self.files, policy, turns, command }
+    pub(crate) fn required(
+        &self,
+        policy: Option<Policy>,
+        coverage: Coverage,
+        command: &'static str,
+    ) -> RequiredSet<'_> {
+        RequiredSet { vehicle: &self.id, files: &self.files, policy, coverage, command }
     }
 
     /// The vehicle's definition.

@@ -14,6 +14,13 @@ use crate::cli::Session;
 use crate::cli::arguments::certify_options;
 use crate::cli::database::fleet;
 
+/// What a set has certificates of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Coverage {
+    Edges,
+    EdgesAndTurns,
+}
+
 /// The set of certificates that a verb needs.
 #[derive(Clone, Copy)]
 pub(crate) struct RequiredSet<'a> {
@@ -23,41 +30,50 @@ pub(crate) struct RequiredSet<'a> {
     pub(crate) files: &'a [PathBuf],
     /// The policy of the certificates. `None` means the policy of the database's ingest.
     pub(crate) policy: Option<Policy>,
-    /// Whether certificates of turns are needed, too.
-    pub(crate) turns: bool,
+    /// What it has to have certificates of.
+    pub(crate) coverage: Coverage,
     /// The verb's name, for the `run` record.
     pub(crate) command: &'static str,
+}
+
+impl RequiredSet<'_> {
+    fn has_turns(&self) -> bool {
+        self.coverage == Coverage::EdgesAndTurns
+    }
 }
 
 /// Returns the database and the required set of certificates, and makes the set or its turns if they are missing. An
 /// existing set keeps its settings; a new set has those of the database's ingest.
 pub(crate) fn certified(
     session: &Session,
-    at: (&Path, Database),
+    path: &Path,
+    database: Database,
     required: &RequiredSet<'_>,
 ) -> anyhow::Result<(Database, CertifiedSet)> {
-    certified_like(session, at, required, None)
+    certified_like(session, path, database, required, None)
 }
 
 /// Returns the database and `id` as a reference for the set of `required`. Certificates that the reference lacks are made with the
 /// settings of that set.
 pub(crate) fn reference(
     session: &Session,
-    (path, mut database): (&Path, Database),
+    path: &Path,
+    mut database: Database,
     required: &RequiredSet<'_>,
-    (set, id): (&CertifiedSet, &str),
+    set: &CertifiedSet,
+    id: &str,
 ) -> anyhow::Result<(Database, Reference)> {
     let settings = set.settings()?;
     for vehicle in &database.reference_ids(id)? {
         if let Some(kept) = database.certified_set(vehicle, set.policy)? {
             // Checked as it will be, before its turns are made.
             let kept = kept.settings()?;
-            let as_it_will_be = Settings { turns: kept.turns || required.turns, ..kept };
+            let as_it_will_be = Settings { turns: kept.turns || required.has_turns(), ..kept };
             let own = VehicleSettings { vehicle: &set.vehicle_id, settings: &settings };
             database.alike(own, VehicleSettings { vehicle, settings: &as_it_will_be })?;
         }
         let required = RequiredSet { vehicle, policy: Some(set.policy), ..*required };
-        (database, _) = certified_like(session, (path, database), &required, Some(&settings))?;
+        (database, _) = certified_like(session, path, database, &required, Some(&settings))?;
     }
     let reference = database.reference(set, id)?;
     Ok((database, reference))
@@ -65,7 +81,8 @@ pub(crate) fn reference(
 
 fn certified_like(
     session: &Session,
-    (path, mut database): (&Path, Database),
+    path: &Path,
+    mut database: Database,
     required: &RequiredSet<'_>,
     like: Option<&Settings>,
 ) -> anyhow::Result<(Database, CertifiedSet)> {
@@ -75,7 +92,7 @@ fn certified_like(
     let settings = match kept {
         Some(set) => {
             let settings = set.settings()?;
-            if !required.turns || database.has_turns(required.vehicle, policy)? {
+            if !required.has_turns() || database.has_turns(required.vehicle, policy)? {
                 return Ok((database, set));
             }
             settings
@@ -93,7 +110,7 @@ fn certified_like(
     session
         .progress
         .say(&format!("{turns}{id} {verb} not certified in {db} under the {name} policy yet: doing it now"));
-    let settings = Settings { turns: settings.turns || required.turns, ..settings };
+    let settings = Settings { turns: settings.turns || required.has_turns(), ..settings };
     let mut parameters = certify_options::parameters(&settings)?;
     parameters.insert("vehicles".into(), json!([id]));
     let ask = pipeline::Certify {

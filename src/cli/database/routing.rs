@@ -15,7 +15,7 @@ use crate::cli::Session;
 use crate::cli::arguments::relative::RelativeArgs;
 use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
-use crate::cli::database::on_demand;
+use crate::cli::database::on_demand::{self, Coverage};
 
 /// The text of `--vehicle` for verbs whose own help does not say it.
 const CERTIFIED_FIRST: &str = "The vehicle; `netcert vehicles list` shows the ids. If this database has not certified it yet, it is \
@@ -59,8 +59,8 @@ impl RoutingArgs {
     pub(crate) fn load(&self, session: &Session, command: &'static str) -> anyhow::Result<RoutingInputs> {
         let path = self.db.path()?;
         let database = Database::open(&path)?;
-        let required = self.vehicle.required(self.policy.corridor, true, command);
-        let (database, set) = on_demand::certified(session, (&path, database), &required)?;
+        let required = self.vehicle.required(self.policy.corridor, Coverage::EdgesAndTurns, command);
+        let (database, set) = on_demand::certified(session, &path, database, &required)?;
         database.close()?;
         let mut region = Region::open(&path)?;
         if let Some(time) = self.time.at {

@@ -94,7 +94,9 @@ impl Fitter {
                 }
                 let small = missing_m < MUCH_M;
                 let rounder = self.rounder(&turning, missing_m, supposed);
-                let paved = !(rounder && small) && self.more_paved(&turning, small, supposed);
+                // Where little is missing, what is not paved yet stays so.
+                let first_m = if small { None } else { Some(FIRST_PAVED_M) };
+                let paved = !(rounder && small) && self.more_paved(&turning, first_m, supposed);
                 let wider = !((rounder || paved) && small) && self.wider(&turning, wider_m, supposed);
                 rounder || paved || wider
             }
@@ -124,11 +126,12 @@ impl Fitter {
         true
     }
 
-    /// Supposes more of a junction to be paved; `only_more`: if that was what helped the turn.
-    fn more_paved(&self, turning: &Turning<'_>, only_more: bool, supposed: &mut Suppositions) -> bool {
+    /// Supposes more of a junction to be paved. Where nothing is supposed to be paved yet it begins at `first_m`, metres; `None`: it begins
+    /// nowhere.
+    fn more_paved(&self, turning: &Turning<'_>, first_m: Option<f64>, supposed: &mut Suppositions) -> bool {
         let mut more = false;
         for (node, at) in turning.nodes(&self.roads.network) {
-            let known_m = supposed.paved_m(node).or((!only_more).then_some(FIRST_PAVED_M));
+            let known_m = supposed.paved_m(node).or(first_m);
             if let Some(radius_m) = known_m.filter(|&radius_m| radius_m < MOST_PAVED_M) {
                 supposed.pave(node, at, radius_m + PAVED_STEP_M);
                 more = true;

@@ -91,8 +91,9 @@ impl Fitting {
         }
     }
 
-    pub(super) fn fitted(self, certified: Certified, suffices: bool) -> Fitted {
-        Fitted { drive: self.drive, certified, supposed: self.supposed, suffices }
+    /// The way as it is certified, where measurements exactly as supposed suffice.
+    pub(super) fn fitted(self, certified: Certified) -> Fitted {
+        Fitted { drive: self.drive, certified, supposed: self.supposed, suffices: true }
     }
 
     /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.
@@ -173,7 +174,7 @@ impl Fitter {
             return Ok(Err(Unfit(joint::parted(way.drive, at))));
         }
         Ok(match self.fresh(&whole, stop)? {
-            Some(certified) => Ok(whole.fitted(certified, false)),
+            Some(certified) => Ok(Fitted { suffices: false, ..whole.fitted(certified) }),
             // No single place is at fault.
             None => Err(Unfit(Vec::new())),
         })
@@ -276,10 +277,10 @@ impl Fitter {
         let mut fitting = self.joined(way, &sections, &own);
         fitting.supposed.add(supposed);
         if let Some(certified) = self.fresh(&fitting, stop)? {
-            return Ok(Some(fitting.fitted(certified, true)));
+            return Ok(Some(fitting.fitted(certified)));
         }
         let certified = if self.safe_as_measured(&mut fitting, stop)? { self.fresh(&fitting, stop)? } else { None };
-        Ok(certified.map(|certified| fitting.fitted(certified, true)))
+        Ok(certified.map(|certified| fitting.fitted(certified)))
     }
 
     /// By section: what is safe under what is supposed, as if it were measured. `None` where nothing is.

@@ -41,7 +41,7 @@ impl Fitter {
                 if self.safe_or_helped(&mut whole, stop)? {
                     // What was certified in between may have been made under less. The answer is made from nothing that was made before.
                     if let Some(certified) = self.fresh(&whole, stop)? {
-                        return Ok(Ok(whole.fitted(certified, true)));
+                        return Ok(Ok(whole.fitted(certified)));
                     }
                     break;
                 }

@@ -48,7 +48,7 @@ impl Fitter {
             stop.check()?;
             let (network, driver) = (&self.roads.network, &self.driver);
             let stroke = self.stroke_of.get(edge as usize).copied().unwrap_or(u32::MAX);
-            let need = || edge_need(network, (stroke, edge), &driver.model, &driver.permits.settings);
+            let need = || edge_need(network, stroke, edge, &driver.model, &driver.permits.settings);
             match *self.needs_m.entry(edge).or_insert_with(need) {
                 Some(need_m) => {
                     self.widen_near(fitting, i, strip, need_m);

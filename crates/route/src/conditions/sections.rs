@@ -37,10 +37,10 @@ pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, 
     for turns in joint::turns(movements, drive).windows(2) {
         let leg = turns[0][1]..turns[1][0] + 1;
         let Some((at, share)) = middle(network, &drive.edges, leg, long_m) else { continue };
-        sections.push(section(drive, first..at + 1, (start, share)));
+        sections.push(section(drive, first..at + 1, start, share));
         (first, start) = (at, share);
     }
-    sections.push(section(drive, first..drive.edges.len(), (start, way.end)));
+    sections.push(section(drive, first..drive.edges.len(), start, way.end));
     sections
 }
 
@@ -62,7 +62,7 @@ fn middle(network: &Network, edges: &[u32], leg: Range<usize>, long_m: f64) -> O
     None
 }
 
-fn section(drive: &Drive, range: Range<usize>, (start, end): (f64, f64)) -> Section {
+fn section(drive: &Drive, range: Range<usize>, start: f64, end: f64) -> Section {
     let over = drive.over.iter().filter(|arcs| range.start < arcs.start && arcs.end < range.end);
     let over = over.map(|arcs| arcs.start - range.start..arcs.end - range.start).collect();
     Section { drive: Drive { edges: drive.edges[range.clone()].to_vec(), over }, first: range.start, start, end }

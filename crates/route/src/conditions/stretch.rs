@@ -9,6 +9,7 @@ use super::sections::Section;
 use crate::assemble::{PartKind, Way};
 use crate::graph::Access;
 use crate::obstacles::Refutation;
+use crate::pieces::TurnEnds;
 use crate::stop::{Stop, Stopped};
 use crate::turning::MadeTurns;
 use crate::whole::{Looked, Whole};
@@ -85,7 +86,7 @@ impl Fitter {
         }
         if self.more_room(fitting, place) {
             // The turn's paths are others now.
-            fitting.choices.remove(&(from, to));
+            fitting.choices.remove(&TurnEnds { from, to });
             return Ok(true);
         }
         Ok(another(self, fitting) || self.merge(fitting, place.at, stop)?)

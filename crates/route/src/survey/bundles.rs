@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use rayon::prelude::*;
 
 use super::component::{Component, Scratch};
-use super::joints::{CLOSED, Item, Joints, OPEN};
+use super::joints::{CLOSED, Item, Joints, OPEN, Sense};
 use crate::stop::{Stop, Stopped};
 
 /// The greatest price of a way there and back, centimetres of missing room.
@@ -51,7 +51,7 @@ pub(super) struct Field<'a> {
 impl Field<'_> {
     /// All bundles that open something, the best first.
     pub(super) fn bundles(&self, stop: &Stop) -> Result<Vec<Bundle>, Stopped> {
-        let (there, back) = (Ways::find(self, true), Ways::find(self, false));
+        let (there, back) = (Ways::find(self, Sense::Ahead), Ways::find(self, Sense::Back));
         let mut found: BTreeSet<Vec<Item>> = BTreeSet::new();
         for edge in 0..self.joints.edges() as u32 {
             let sum = there.cm[edge as usize].saturating_add(back.cm[edge as usize]);
@@ -150,7 +150,7 @@ struct Ways {
 const NONE: u32 = u32::MAX;
 
 impl Ways {
-    fn find(field: &Field<'_>, ahead: bool) -> Self {
+    fn find(field: &Field<'_>, sense: Sense) -> Self {
         let Field { joints, prices, component, .. } = field;
         let edges = joints.edges();
         let mut ways = Self { cm: vec![u32::MAX; edges], last: vec![NONE; edges], links: Vec::new() };
@@ -180,9 +180,9 @@ impl Ways {
                 ways.last[next as usize] = last;
                 queue.push(Reverse((sum, next)));
             };
-            match ahead {
-                true => joints.after(at).for_each(|step| visit(step.item, step.to)),
-                false => joints.before(at).for_each(|step| visit(step.item, step.from)),
+            match sense {
+                Sense::Ahead => joints.after(at).for_each(|step| visit(step.item, step.to)),
+                Sense::Back => joints.before(at).for_each(|step| visit(step.item, step.from)),
             }
         }
         ways

@@ -1,6 +1,6 @@
 //! The component of the roads in which a vehicle can drive from everywhere to everywhere, and what joins it when more is open.
 
-use super::joints::{CLOSED, Item, Joints, OPEN, Step};
+use super::joints::{CLOSED, Item, Joints, OPEN, Sense, Step};
 
 /// The roads from which one edge can be reached and that can be reached from it.
 pub(super) struct Component {
@@ -29,7 +29,7 @@ impl Scratch {
 impl Component {
     /// The component of an edge over everything that is open.
     pub(super) fn of(joints: &Joints, prices: &[u32], edge: u32) -> Self {
-        let flood = |ahead: bool| {
+        let flood = |sense: Sense| {
             let mut seen = vec![false; joints.edges()];
             let mut open = vec![edge];
             seen[edge as usize] = true;
@@ -40,14 +40,14 @@ impl Component {
                         open.push(next);
                     }
                 };
-                match ahead {
-                    true => joints.after(at).for_each(|step| visit(step, step.to)),
-                    false => joints.before(at).for_each(|step| visit(step, step.from)),
+                match sense {
+                    Sense::Ahead => joints.after(at).for_each(|step| visit(step, step.to)),
+                    Sense::Back => joints.before(at).for_each(|step| visit(step, step.from)),
                 }
             }
             seen
         };
-        Self { there: flood(true), back: flood(false) }
+        Self { there: flood(Sense::Ahead), back: flood(Sense::Back) }
     }
 
     /// Whether an edge belongs to the component.
@@ -78,7 +78,8 @@ impl Component {
         }
         let is_open = |item: Item| prices[item as usize] == OPEN || extra[item as usize] == *round;
         let mut joined_m = 0.0;
-        for ahead in [true, false] {
+        for sense in [Sense::Ahead, Sense::Back] {
+            let ahead = sense == Sense::Ahead;
             let (known, seen) = if ahead { (&self.there, &mut *there) } else { (&self.back, &mut *back) };
             open.clear();
             for &item in items {
@@ -108,9 +109,9 @@ impl Component {
                         open.push(next);
                     }
                 };
-                match ahead {
-                    true => joints.after(at).for_each(|step| visit(step, step.to)),
-                    false => joints.before(at).for_each(|step| visit(step, step.from)),
+                match sense {
+                    Sense::Ahead => joints.after(at).for_each(|step| visit(step, step.to)),
+                    Sense::Back => joints.before(at).for_each(|step| visit(step, step.from)),
                 }
             }
             if ahead {

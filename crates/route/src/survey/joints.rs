@@ -16,6 +16,15 @@ use crate::vehicle::Vehicle;
 /// Something that is open or not: an edge, or, beyond all edges, a movement and then a passage.
 pub(super) type Item = u32;
 
+/// Which way along the roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sense {
+    /// As the traffic goes.
+    Ahead,
+    /// Against it.
+    Back,
+}
+
 /// The price of what is open, and of what no measurement opens.
 pub(super) const OPEN: u32 = 0;
 pub(super) const CLOSED: u32 = u32::MAX;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::joints::{Item, Joints};
+use super::joints::{Item, Joints, Sense};
 use crate::assemble::movement;
 use crate::certify::{Job, MOST_KERB_M, Touched, TurnJob, certify_some_turns, certify_strokes, edge_need};
 use crate::conditions::{BESIDE_M, Condition, ConditionAt, Suppositions, Turning};
@@ -154,11 +154,12 @@ impl Opener {
         let strip = self.settings.policy;
         let need = |&edge: &u32| {
             stop.check()?;
-            let place = (self.stroke_of[edge as usize], edge);
             let known = self.network.edges.get(edge as usize).and_then(|edge| self.network.section(edge).strip(strip));
             // What is measured already, another measurement does not widen.
             let open = known.is_some_and(|strip| strip.source != WidthSource::Surveyed);
-            Ok((edge, open.then(|| edge_need(&self.network, place, &self.driver.model, &self.settings)).flatten()))
+            let stroke = self.stroke_of[edge as usize];
+            let need = || edge_need(&self.network, stroke, edge, &self.driver.model, &self.settings);
+            Ok((edge, open.then(need).flatten()))
         };
         let unknown: Vec<u32> = edges.iter().copied().filter(|edge| !self.widths_m.contains_key(edge)).collect();
         let found: Vec<(u32, Option<f64>)> = unknown.par_iter().map(need).collect::<Result<_, Stopped>>()?;
@@ -176,7 +177,9 @@ impl Opener {
         // The road beside them counts, too: the vehicle stands on both.
         for &(edge, need_m) in needs.iter().filter(|(edge, _)| narrow.contains(edge)) {
             let reach_m = self.driver.model.vehicle.length_m + BESIDE_M;
-            for near in self.along(edge, reach_m, false).into_iter().chain(self.along(edge, reach_m, true)) {
+            for near in
+                self.along(edge, reach_m, Sense::Back).into_iter().chain(self.along(edge, reach_m, Sense::Ahead))
+            {
                 self.suppose_width(near, need_m, supposed);
             }
         }
@@ -319,14 +322,14 @@ impl Opener {
         let movements = &self.roads.movements;
         let passage = movements.passage(step.from, step.to).filter(|_| movements.index(step.from, step.to).is_none());
         let arcs = passage.map_or(&[][..], |place| &movements.passages()[place].through);
-        let mut edges = self.along(step.from, AROUND_M, false);
+        let mut edges = self.along(step.from, AROUND_M, Sense::Back);
         edges.reverse();
         edges.push(step.from);
         let first = edges.len();
         edges.extend(arcs);
         let at = edges.len();
         edges.push(step.to);
-        edges.extend(self.along(step.to, AROUND_M, true));
+        edges.extend(self.along(step.to, AROUND_M, Sense::Ahead));
         let over = if arcs.is_empty() { Vec::new() } else { std::iter::once(first..at).collect() };
         let drive = Drive { edges, over };
         let join = Join { from: step.from, arcs: &drive.edges[first..at], to: step.to, at };
@@ -336,14 +339,14 @@ impl Opener {
     }
 
     /// The edges of a stroke before or after one of them, up to a distance, from it on.
-    fn along(&self, edge: u32, most_m: f64, ahead: bool) -> Vec<u32> {
+    fn along(&self, edge: u32, most_m: f64, sense: Sense) -> Vec<u32> {
         let network = &self.network;
         let Some(stroke) = network.strokes.get(self.stroke_of[edge as usize] as usize) else { return Vec::new() };
         let place = self.place_of[edge as usize];
         let range = |from: u32, to: u32| &network.stroke_edges[from as usize..to as usize];
-        let others: Vec<u32> = match ahead {
-            true => range(place + 1, stroke.edges.end).to_vec(),
-            false => range(stroke.edges.start, place).iter().rev().copied().collect(),
+        let others: Vec<u32> = match sense {
+            Sense::Ahead => range(place + 1, stroke.edges.end).to_vec(),
+            Sense::Back => range(stroke.edges.start, place).iter().rev().copied().collect(),
         };
         let mut far_m = 0.0;
         let near = others.into_iter().take_while(|&edge| {

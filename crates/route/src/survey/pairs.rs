@@ -48,7 +48,8 @@ pub fn survey_pairs(
     planner: &mut Planner,
     pairs: &Pairs,
     limit: usize,
-    (reporter, stop): (&dyn Reporter, &Stop),
+    reporter: &dyn Reporter,
+    stop: &Stop,
 ) -> Result<Survey, crate::stop::Stopped> {
     let mut survey = Survey {
         opens: Opens::Pairs,

@@ -31,7 +31,8 @@ pub fn survey_region(
     speeds: &Speeds,
     from: &[u32],
     limit: usize,
-    (reporter, stop): (&dyn Reporter, &Stop),
+    reporter: &dyn Reporter,
+    stop: &Stop,
 ) -> Result<Survey, Stopped> {
     stop.check()?;
     let joints = Joints::of(roads, &driver.model.vehicle);
@@ -40,7 +41,7 @@ pub fn survey_region(
     let certified = (0..).zip(&lengths_m).filter(|(edge, _)| driver.permits.edge(*edge));
     let all = certified.map(|(_, length_m)| length_m).fold(0.0, |sum, m| sum + m);
     let mut survey = Survey { opens: Opens::Metres, all, before: 0.0, steps: Vec::new(), hopeless: 0, gave_up: false };
-    let Some(anchor) = anchor(roads, driver, speeds, &joints, (&prices, &lengths_m), from) else { return Ok(survey) };
+    let Some(anchor) = anchor(roads, driver, speeds, &joints, &prices, &lengths_m, from) else { return Ok(survey) };
     let mut surveyor = Surveyor {
         opener: Opener::new(roads, driver, &joints),
         component: Component::of(&joints, &prices, anchor),
@@ -75,7 +76,8 @@ fn anchor(
     driver: &Driver,
     speeds: &Speeds,
     joints: &Joints,
-    (prices, lengths_m): (&[u32], &[f64]),
+    prices: &[u32],
+    lengths_m: &[f64],
     from: &[u32],
 ) -> Option<u32> {
     let usable = |edge: u32| driver.permits.edge(edge);

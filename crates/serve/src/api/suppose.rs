@@ -89,8 +89,7 @@ impl Case<'_> {
         let stroke = *network.strokes_of_edges().get(edge as usize).ok_or_else(no_width)?;
         let results = stroke_at_least(network, stroke, width_m, self.model, self.settings(), self.stop)?;
         let own = results.iter().find(|(other, _)| *other == edge).map(|(_, result)| result).ok_or_else(no_width)?;
-        if let Verdict::Forbidden(_) | Verdict::Unknown(_) =
-            verdict((self.network(), facts), self.model, None, Some(own))
+        if let Verdict::Forbidden(_) | Verdict::Unknown(_) = verdict(self.network(), facts, self.model, None, Some(own))
         {
             return Err(Problem::not_found(format!("edge {}: a rule decides there, and no width helps", facts.id)));
         }
@@ -224,7 +223,7 @@ fn certified_need_m(
         return row.need_width_m;
     }
     let stroke = *network.strokes_of_edges().get(edge as usize)?;
-    edge_need(network, (stroke, edge), model, settings)
+    edge_need(network, stroke, edge, model, settings)
 }
 
 /// What may be supposed of a turn, for a slider. Null if no kerb radius decides there.

@@ -34,7 +34,7 @@ pub(super) fn figure(s: &Simulated) -> String {
     for (unit, (tube, leeway)) in s.paper.tubes.iter().zip(&leeway).enumerate() {
         let corner = [(unit % columns) as f64 * size[0], TOP + (unit / columns) as f64 * size[1]];
         let frame = Frame { x: corner[0], y: corner[1], width: size[0], height: size[1] };
-        panel(&mut picture, s, (unit, tube, leeway), frame.inset(18.0), range);
+        panel(&mut picture, s, &UnitTube { unit, tube, leeway }, frame.inset(18.0), range);
     }
     colour_bar(&mut picture, range);
     picture.finish()
@@ -52,13 +52,15 @@ fn range(leeway: &[Vec<Leeway>]) -> [f64; 2] {
     [low.floor(), high.ceil()]
 }
 
-fn panel(
-    picture: &mut Picture,
-    s: &Simulated,
-    (unit, tube, leeway): (usize, &[Stet], &[Leeway]),
-    frame: Frame,
-    range: [f64; 2],
-) {
+/// The tube of one unit, with its leeway at each instant.
+struct UnitTube<'a> {
+    unit: usize,
+    tube: &'a [Stet],
+    leeway: &'a [Leeway],
+}
+
+fn panel(picture: &mut Picture, s: &Simulated, of_unit: &UnitTube<'_>, frame: Frame, range: [f64; 2]) {
+    let UnitTube { unit, tube, leeway } = *of_unit;
     let edges = |side: fn(&netcert::published::Route, usize) -> Point| -> Vec<Point> {
         (0..s.route.len()).map(|i| side(&s.route, i)).collect()
     };
