@@ -1,4 +1,4 @@
-//! The state that all requests share: the current region, the cache of finished answers, and the lanes for work.
+//! The state that all requests share: what is served now, the cache of finished answers, and the lanes for work.
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
@@ -12,13 +12,13 @@ use super::older::Older;
 use super::options::Options;
 use super::problem::Problem;
 use super::region::{Identity, Region};
-use super::tiles;
+use super::served::Served;
 use super::work::Lane;
 
 /// The application.
 pub(super) struct App {
     pub(super) options: Options,
-    region: RwLock<Arc<Region>>,
+    served: RwLock<Arc<Served>>,
     /// Locked while a changed file is read, so that one request reads it and the others wait.
     reading: Mutex<()>,
     cache: Cache,
@@ -36,11 +36,11 @@ pub(super) enum Pace {
 }
 
 impl App {
-    pub(super) fn new(options: Options, region: Region) -> Self {
+    pub(super) fn new(options: Options, served: Served) -> Self {
         let limits = options.limits;
         let (quick, slow) = (limits.quick, limits.slow);
         Self {
-            region: RwLock::new(Arc::new(region)),
+            served: RwLock::new(Arc::new(served)),
             reading: Mutex::new(()),
             cache: Cache::new(limits.cache_bytes),
             quick: Lane::new(quick.at_a_time, quick.waiting, quick.time),
@@ -49,8 +49,8 @@ impl App {
         }
     }
 
-    /// The region of the current file. Reads the file if it has changed.
-    async fn region(self: &Arc<Self>) -> Result<Arc<Region>, Problem> {
+    /// What is served of the current file. Reads the file if it has changed.
+    async fn served(self: &Arc<Self>) -> Result<Arc<Served>, Problem> {
         if let Some(known) = self.unchanged()? {
             return Ok(known);
         }
@@ -60,22 +60,22 @@ impl App {
             if let Some(read) = app.unchanged()? {
                 return Ok(read);
             }
-            let known = Arc::clone(&app.region.read().unwrap_or_else(PoisonError::into_inner));
+            let known = Arc::clone(&app.served.read().unwrap_or_else(PoisonError::into_inner));
             let before = app.options.before.as_deref();
             let older = before.map(|path| Older::open(path, known.older.as_ref())).transpose()?;
-            let region = Region::open(&app.options.db, older)?.holding(app.options.limits.held_edges);
-            let region = Arc::new(region);
-            *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
+            let region = Region::open(&app.options.db)?.holding(app.options.limits.held_edges);
+            let served = Arc::new(Served::new(region, older));
+            *app.served.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&served);
             lines::read_anew(&app.options.db);
-            Ok(region)
+            Ok(served)
         };
         self.quick.run(read).await
     }
 
-    /// The known region, if neither the file nor the older one has changed since they were read.
-    fn unchanged(&self) -> Result<Option<Arc<Region>>, Problem> {
-        let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
-        let same = Identity::of(&self.options.db)? == known.identity;
+    /// What is served, if neither the file nor the older one has changed since they were read.
+    fn unchanged(&self) -> Result<Option<Arc<Served>>, Problem> {
+        let known = Arc::clone(&self.served.read().unwrap_or_else(PoisonError::into_inner));
+        let same = Identity::of(&self.options.db)? == known.region.identity;
         let older = self.options.before.as_deref().map(|path| Identity::of(path).ok());
         let same_older = older.as_ref() == known.older.as_ref().map(|older| &older.identity);
         Ok((same && same_older).then_some(known))
@@ -83,23 +83,23 @@ impl App {
 
     /// Loads in advance what the first tiles need.
     pub(super) async fn first_map(self: &Arc<Self>) {
-        let Ok(region) = self.region().await else { return };
+        let Ok(served) = self.served().await else { return };
         // An error is ignored here; the first request that needs the roads gets it.
-        let _ = self.slow.run(move |_| region.first_map()).await;
+        let _ = self.slow.run(move |_| served.region.first_map()).await;
     }
 
     /// Makes the overviews in advance, which the first map of each vehicle needs.
     pub(super) async fn prepare(self: &Arc<Self>) {
-        let Ok(region) = self.region().await else { return };
+        let Ok(served) = self.served().await else { return };
         // An error is ignored here; the first request that needs an overview gets it.
-        let _ = self.slow.run(move |stop| tiles::prepare(&region, &stop)).await;
+        let _ = self.slow.run(move |stop| served.overviews.prepare(&served.region, &stop)).await;
     }
 
     /// Loads in advance what tiles of deeper zooms, and the first explanation, route and search need.
     pub(super) async fn warm_up(self: Arc<Self>) {
-        let Ok(region) = self.region().await else { return };
+        let Ok(served) = self.served().await else { return };
         // An error is ignored here; the first request that needs the roads gets it.
-        let _ = self.slow.run(move |stop| region.warm_up(&stop)).await;
+        let _ = self.slow.run(move |stop| served.region.warm_up(&stop)).await;
     }
 
     /// Answers from the cache, or does the work and caches the answer.
@@ -107,7 +107,7 @@ impl App {
         self: &Arc<Self>,
         ask: Ask,
         pace: Pace,
-        work: impl FnOnce(&Region, &Ask) -> Result<Stored, Problem> + Send + 'static,
+        work: impl FnOnce(&Served, &Ask) -> Result<Stored, Problem> + Send + 'static,
     ) -> Response {
         match self.try_answer(&ask, pace, work).await {
             Ok((stored, keep)) => stored.respond(&ask, keep),
@@ -119,11 +119,11 @@ impl App {
         self: &Arc<Self>,
         ask: &Ask,
         pace: Pace,
-        work: impl FnOnce(&Region, &Ask) -> Result<Stored, Problem> + Send + 'static,
+        work: impl FnOnce(&Served, &Ask) -> Result<Stored, Problem> + Send + 'static,
     ) -> Result<(Arc<Stored>, Keep), Problem> {
-        let region = self.region().await?;
-        let keep = if ask.parameter(STATE) == Some(&region.state) { Keep::ForEver } else { Keep::Ask };
-        let key = format!("{} {}", region.state, ask.key());
+        let served = self.served().await?;
+        let keep = if ask.parameter(STATE) == Some(&served.state) { Keep::ForEver } else { Keep::Ask };
+        let key = format!("{} {}", served.state, ask.key());
         if let Some(stored) = self.cache.get(&key) {
             return Ok((stored, keep));
         }
@@ -139,7 +139,7 @@ impl App {
                 if let Some(stored) = app.cache.get(&key) {
                     return Ok(stored);
                 }
-                let stored = Arc::new(work(&region, &asked)?);
+                let stored = Arc::new(work(&served, &asked)?);
                 app.cache.put(&key, Arc::clone(&stored));
                 Ok(stored)
             })

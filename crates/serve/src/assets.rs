@@ -10,8 +10,8 @@ use axum::extract::Request;
 use axum::response::{IntoResponse as _, Response};
 
 use super::answer::{Keep, Stored};
-use super::ask::Ask;
-use super::routes::nothing;
+use super::ask::{Ask, shortened};
+use super::problem::Problem;
 
 include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
@@ -34,6 +34,12 @@ pub(super) async fn asset(request: Request) -> Response {
         Ok(ask) => stored.respond(&ask, keep),
         Err(problem) => problem.into_response(),
     }
+}
+
+/// The answer to an unknown address.
+fn nothing(request: &Request) -> Response {
+    let path = shortened(request.uri().path());
+    Problem::not_found(format!("{path}: no such address; /api/openapi.json lists all addresses")).into_response()
 }
 
 /// The media type of a file, by the ending of its name.

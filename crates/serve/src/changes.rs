@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::memo::Recent;
 use super::problem::Problem;
-use super::region::{Certified, Region};
+use super::region::Certified;
 use crate::diff::{self, Change, Changed, Row, Sums};
 use crate::network::length_m;
 use crate::rows::{Bounds, DrivingSides, EdgeRow, SetKey, TurnRow};
@@ -16,6 +17,8 @@ use crate::stop::Stop;
 use crate::store::{QueryOptions, StoreError};
 use crate::words::Named;
 
+/// Number of comparisons to keep. Each has up to 50 MB.
+const MOST_COMPARED: usize = 2;
 /// The greatest number of changes to keep. Each takes about a kilobyte.
 const MOST_KEPT: usize = 50_000;
 /// The greatest number of roads in the list of the largest changes.
@@ -46,13 +49,32 @@ pub(super) struct Changes {
     pub(super) complete: bool,
 }
 
+/// The last comparisons with the older database, by vehicle and policy.
+pub(super) struct Comparisons(Recent<Changes>);
+
+impl Default for Comparisons {
+    fn default() -> Self {
+        Self(Recent::new(MOST_COMPARED))
+    }
+}
+
+impl Comparisons {
+    /// What changed from the set of the older database to the same set of the newer one. The first call compares them.
+    pub(super) fn of(
+        &self,
+        before: &Certified<'_>,
+        after: &Certified<'_>,
+        stop: &Stop,
+    ) -> Result<Arc<Changes>, Problem> {
+        let key = format!("{} {}", after.vehicle.id, after.set.policy.name());
+        self.0.get(&key, || Changes::between(before, after, stop))
+    }
+}
+
 impl Changes {
     /// Compares a set with that of the older database.
-    pub(super) fn between(
-        (old, before): (&Region, &Certified<'_>),
-        (new, after): (&Region, &Certified<'_>),
-        stop: &Stop,
-    ) -> Result<Self, Problem> {
+    fn between(before: &Certified<'_>, after: &Certified<'_>, stop: &Stop) -> Result<Self, Problem> {
+        let (old, new) = (before.region, after.region);
         let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
         let turned = before.settings.turns && after.settings.turns;
         let mut gathered = Gathered {

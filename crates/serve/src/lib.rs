@@ -17,6 +17,7 @@
 //! | `answer`, `cache` | entity tags, compression, conditional requests; the cache of answers |
 //! | `problem` | errors, as problem+json |
 //! | `app`, `work` | the state that requests share; lanes for work that blocks |
+//! | `served` | what requests are answered from: the region, the older database, and the last results of long work |
 //! | `region`, `roads` | one state of the database file; the network in memory |
 //! | `older`, `changes` | the older database beside it; what changed since then |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
@@ -25,6 +26,14 @@
 //! | `tiles` | vector tiles |
 //! | `api` | all other endpoints, one file each |
 //! | `assets` | the page |
+//!
+//! No module uses one above it. From below:
+//!
+//! 1. `options`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
+//! 2. `roads`, `search` and `region` read one file.
+//! 3. `older`, `changes`, `planning`, `drive` and `tiles` make results from regions. Each defines how many of its results are kept.
+//! 4. `api` answers from the values that an endpoint needs. `served` puts these values together.
+//! 5. `app`, `gate`, `assets`, `routes` and `run` connect requests to them.
 
 use netcert_base::{speed_profile, stop, vehicle, verdict, words};
 use netcert_certify as certify;
@@ -59,6 +68,7 @@ mod roads;
 mod routes;
 mod run;
 mod search;
+mod served;
 mod tiles;
 mod work;
 

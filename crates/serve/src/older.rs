@@ -35,7 +35,7 @@ impl Older {
         if let Some(known) = known.filter(|known| known.identity == identity) {
             return Ok(Self { identity, region: known.region.clone() });
         }
-        match Region::open(path, None) {
+        match Region::open(path) {
             Ok(region) => Ok(region.into()),
             Err(error @ StoreError::Busy(_)) => Err(error),
             Err(error) => Ok(Self { identity, region: Err(unreadable(&error)) }),
@@ -48,8 +48,8 @@ impl Older {
     }
 
     /// The name of its state.
-    pub(super) fn state(&self) -> &str {
-        self.region.as_ref().map_or("unreadable", |region| &region.state)
+    pub(super) fn state(&self) -> String {
+        self.region.as_ref().map_or_else(|_| "unreadable".to_owned(), |region| region.state(""))
     }
 }
 

@@ -6,6 +6,7 @@
 use std::sync::{Arc, mpsc};
 
 use super::drive;
+use super::memo::Recent;
 use super::problem::Problem;
 use super::region::{Certified, Region};
 use crate::picture::{self, SheetStyle, Units};
@@ -16,6 +17,11 @@ use crate::stop::Stop;
 use crate::words::{Named as _, verdict_words};
 use serde_json::{Value, json};
 
+/// Number of planners to keep. Each holds an index of all roads and the corridors that it has made.
+const MOST_ROUTERS: usize = 4;
+/// Number of answers to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive has some
+/// megabytes.
+const MOST_PLANNED: usize = 4;
 /// After this many answers a planner is replaced by a new one, because the corridors that it keeps grow with every answer.
 const ANSWERS: usize = 100;
 /// Questions that may wait for one planner. The slow lane lets fewer through.
@@ -60,6 +66,20 @@ type Reply = mpsc::Sender<Result<Planned, Problem>>;
 /// The sending end of a planner's questions.
 pub(super) struct Router {
     questions: mpsc::SyncSender<(Ride, Reply)>,
+}
+
+/// The last planners and their last answers.
+pub(super) struct Planners {
+    /// By vehicle, policy and measure.
+    pub(super) routers: Recent<Router>,
+    /// By the whole question.
+    pub(super) planned: Recent<Planned>,
+}
+
+impl Default for Planners {
+    fn default() -> Self {
+        Self { routers: Recent::new(MOST_ROUTERS), planned: Recent::new(MOST_PLANNED) }
+    }
 }
 
 /// What one planner is made from.

@@ -9,17 +9,12 @@ use std::time::SystemTime;
 
 use serde_json::json;
 
-use super::api::explain::Explained;
 use super::ask::shortened;
-use super::changes::Changes;
 use super::memo::{Late, Recent};
-use super::older::Older;
 use super::options::Limits;
-use super::planning::{Planned, Router};
 use super::problem::Problem;
 use super::roads::RoadIndex;
 use super::search::Finder;
-use super::tiles::Overview;
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, DrivingSides, MapNumbers, SetKey};
 use crate::settings::Settings;
@@ -30,21 +25,10 @@ use crate::words::Named;
 
 /// Number of idle connections to keep. Each may hold 64 MB of the file's pages.
 const MOST_IDLE: usize = 4;
-/// Number of explanations to keep. Each has a picture and shapes for the map of some 100 kB.
-const MOST_EXPLAINED: usize = 16;
-/// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
-pub(super) const MOST_OVERVIEWS: usize = 6;
 /// Number of sets to keep the numbers of all edges of. An edge takes 64 bytes in each set.
 const MOST_NUMBERS: usize = 6;
 /// A tile waits for the network of a region with at most so many edges. It is loaded sooner than a handful of tiles are made from the file.
 const MOST_WAITED_FOR: usize = 500_000;
-/// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
-/// has some megabytes.
-const MOST_PLANNED: usize = 4;
-/// Number of comparisons with the older database to keep, one for each vehicle and policy. Each has up to 50 MB; see `changes`.
-const MOST_COMPARED: usize = 2;
-/// Number of planners to keep. Each holds an index of all roads and the corridors that it has made.
-const MOST_ROUTERS: usize = 4;
 
 /// The identity of a state of a file: its device and inode, its length, and the time when it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -79,6 +63,7 @@ impl Identity {
 
 /// A vehicle with its set of certificates under a policy, and the settings of that set.
 pub(super) struct Certified<'r> {
+    pub(super) region: &'r Region,
     pub(super) vehicle: &'r Vehicle,
     pub(super) set: &'r CertifiedSet,
     pub(super) settings: Settings,
@@ -88,10 +73,6 @@ pub(super) struct Certified<'r> {
 pub(super) struct Region {
     path: PathBuf,
     pub(super) identity: Identity,
-    /// The older database, if the server was given one.
-    pub(super) older: Option<Older>,
-    /// The name of this state; see `answer`.
-    pub(super) state: String,
     /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
     pub(super) content: String,
     pub(super) extent: Option<Bounds>,
@@ -113,21 +94,11 @@ pub(super) struct Region {
     sides: Late<Arc<DrivingSides>>,
     /// The numbers of all edges in the last sets, by vehicle and policy.
     numbers: Recent<Vec<MapNumbers>>,
-    /// The last overviews, by vehicle and policy.
-    pub(super) overviews: Recent<Overview>,
-    /// The last explanations, by id, vehicle and policy.
-    pub(super) explained: Recent<Explained>,
-    /// What changed since the older database for the last sets, by vehicle and policy.
-    pub(super) changes: Recent<Changes>,
-    /// The last answers of planners, by the whole question.
-    pub(super) planned: Recent<Planned>,
-    /// The last planners, by vehicle, policy and measure.
-    pub(super) routers: Recent<Router>,
 }
 
 impl Region {
-    /// Opens the file and reads the facts of the whole file. The state's name covers the older database, so no answer outlives either.
-    pub(super) fn open(path: &Path, older: Option<Older>) -> Result<Self, StoreError> {
+    /// Opens the file and reads the facts of the whole file.
+    pub(super) fn open(path: &Path) -> Result<Self, StoreError> {
         let identity = Identity::of(path)?;
         let mut database = Database::open(path)?;
         let policy = database.settings_of_new_sets()?.policy;
@@ -144,14 +115,9 @@ impl Region {
             vehicles.push(vehicle.map_err(|error| damaged(format!("vehicle {}: {error}", record.id)))?);
         }
         let content = content(&runs, &sets);
-        let beside = older.as_ref().map_or("", Older::state);
-        let state = format!("{} {identity:?} {content} {beside}", env!("CARGO_PKG_VERSION"));
-        let state = blake3::hash(state.as_bytes());
         let region = Self {
             path: path.to_owned(),
             identity,
-            older,
-            state: state.to_hex().chars().take(16).collect(),
             content,
             extent: database.extent()?,
             backdrop: database.has_backdrop()?,
@@ -167,11 +133,6 @@ impl Region {
             finder: Late::default(),
             sides: Late::default(),
             numbers: Recent::new(MOST_NUMBERS),
-            overviews: Recent::new(MOST_OVERVIEWS),
-            explained: Recent::new(MOST_EXPLAINED),
-            changes: Recent::new(MOST_COMPARED),
-            planned: Recent::new(MOST_PLANNED),
-            routers: Recent::new(MOST_ROUTERS),
         };
         Ok(region)
     }
@@ -180,6 +141,12 @@ impl Region {
     pub(super) fn holding(mut self, held_edges: usize) -> Self {
         self.held_edges = held_edges;
         self
+    }
+
+    /// The name of this state of the file beside another one, whose name is `beside`, or empty if there is none.
+    pub(super) fn state(&self, beside: &str) -> String {
+        let state = format!("{} {:?} {} {beside}", env!("CARGO_PKG_VERSION"), self.identity, self.content);
+        blake3::hash(state.as_bytes()).to_hex().chars().take(16).collect()
     }
 
     /// The run that made the database from its extract.
@@ -306,7 +273,7 @@ impl Region {
     pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<Certified<'_>, Problem> {
         let vehicle = self.vehicle(id)?;
         if let Some(set) = self.sets.iter().find(|set| set.vehicle_id == id && set.policy == policy) {
-            return Ok(Certified { vehicle, set, settings: set.settings()? });
+            return Ok(Certified { region: self, vehicle, set, settings: set.settings()? });
         }
         let policies = self.policies(id);
         let names: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();

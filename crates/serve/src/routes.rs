@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Request, State};
-use axum::response::{IntoResponse as _, Response};
+use axum::extract::State;
+use axum::response::Response;
 use axum::routing::get;
 use axum::{Router, middleware};
 
@@ -14,31 +14,39 @@ use super::ask::Ask;
 use super::assets;
 use super::gate::gate;
 use super::problem::Problem;
-use super::region::Region;
+use super::served::Served;
 use super::tiles;
 
-type Work = fn(&Region, &Ask) -> Result<Stored, Problem>;
+type Work = fn(&Served, &Ask) -> Result<Stored, Problem>;
 
 /// The addresses that are answered from the database, each with its lane and its function.
 const ENDPOINTS: &[(&str, Pace, Work)] = &[
-    ("/api/vehicles", Pace::Quick, api::vehicles::list),
-    ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
-    ("/api/changes", Pace::Slow, api::changes::changes),
-    ("/api/edges/{id}", Pace::Quick, api::edges::edge),
-    ("/api/explain/{id}", Pace::Slow, api::explain::explain),
-    ("/api/explain/{id}/map.geojson", Pace::Slow, api::explain::mapped),
-    ("/api/explain/{id}/picture.svg", Pace::Slow, api::explain::drawn),
-    ("/api/route", Pace::Slow, api::route::route),
-    ("/api/sheet.css", Pace::Quick, api::route::sheet_css),
-    ("/api/sheet.csv", Pace::Slow, api::route::sheet_csv),
-    ("/api/sheet.geojson", Pace::Slow, api::route::sheet_geojson),
-    ("/api/sheet.html", Pace::Slow, api::route::sheet_html),
-    ("/api/road", Pace::Quick, api::road::road),
-    ("/api/search", Pace::Quick, api::search::search),
-    ("/api/stats", Pace::Slow, api::stats::stats),
-    ("/api/suppose/{id}", Pace::Slow, api::suppose::suppose),
-    ("/backdrop/{z}/{x}/{y}", Pace::Quick, tiles::backdrop::tile),
-    ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, tiles::tile),
+    ("/api/vehicles", Pace::Quick, |served, ask| api::vehicles::list(&served.region, ask)),
+    ("/api/vehicles/{id}/drawing.svg", Pace::Quick, |served, ask| api::vehicles::drawing(&served.region, ask)),
+    ("/api/changes", Pace::Slow, |served, ask| {
+        api::changes::changes(&served.region, served.older.as_ref(), &served.comparisons, ask)
+    }),
+    ("/api/edges/{id}", Pace::Quick, |served, ask| api::edges::edge(&served.region, ask)),
+    ("/api/explain/{id}", Pace::Slow, |served, ask| api::explain::explain(&served.region, &served.explanations, ask)),
+    ("/api/explain/{id}/map.geojson", Pace::Slow, |served, ask| {
+        api::explain::mapped(&served.region, &served.explanations, ask)
+    }),
+    ("/api/explain/{id}/picture.svg", Pace::Slow, |served, ask| {
+        api::explain::drawn(&served.region, &served.explanations, ask)
+    }),
+    ("/api/route", Pace::Slow, |served, ask| api::route::route(&served.region, &served.planners, ask)),
+    ("/api/sheet.css", Pace::Quick, |_, ask| api::route::sheet_css(ask)),
+    ("/api/sheet.csv", Pace::Slow, |served, ask| api::route::sheet_csv(&served.region, &served.planners, ask)),
+    ("/api/sheet.geojson", Pace::Slow, |served, ask| api::route::sheet_geojson(&served.region, &served.planners, ask)),
+    ("/api/sheet.html", Pace::Slow, |served, ask| api::route::sheet_html(&served.region, &served.planners, ask)),
+    ("/api/road", Pace::Quick, |served, ask| api::road::road(&served.region, ask)),
+    ("/api/search", Pace::Quick, |served, ask| api::search::search(&served.region, ask)),
+    ("/api/stats", Pace::Slow, |served, ask| api::stats::stats(&served.region, ask)),
+    ("/api/suppose/{id}", Pace::Slow, |served, ask| api::suppose::suppose(&served.region, ask)),
+    ("/backdrop/{z}/{x}/{y}", Pace::Quick, |served, ask| tiles::backdrop::tile(&served.region, ask)),
+    ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, |served, ask| {
+        tiles::tile(&served.region, &served.overviews, ask)
+    }),
 ];
 
 /// The whole server except listening.
@@ -50,8 +58,8 @@ pub(super) fn router(app: Arc<App>) -> Router {
     }
     router
         .route("/healthz", get(health))
-        .route("/api/region", get(api::region::region))
-        .route("/api/openapi.json", get(api::openapi))
+        .route("/api/region", get(region))
+        .route("/api/openapi.json", get(openapi))
         .fallback(get(assets::asset))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), gate))
         .with_state(app)
@@ -59,17 +67,25 @@ pub(super) fn router(app: Arc<App>) -> Router {
 
 /// Answers `ok` if the server runs and the database can be read.
 async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
-    app.answer(ask, Pace::Quick, |region, ask| {
+    app.answer(ask, Pace::Quick, |served, ask| {
         ask.only(&[])?;
-        Ok(Stored::new("text/plain; charset=utf-8", format!("ok {}\n", region.state).into_bytes()))
+        Ok(Stored::new("text/plain; charset=utf-8", format!("ok {}\n", served.state).into_bytes()))
     })
     .await
 }
 
-/// The answer to an unknown address.
-pub(super) fn nothing(request: &Request) -> Response {
-    let path = super::ask::shortened(request.uri().path());
-    Problem::not_found(format!("{path}: no such address; /api/openapi.json lists all addresses")).into_response()
+/// Describes what is served.
+async fn region(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    let base_map = app.options.base_map.clone();
+    let work = move |Served { region, older, state, .. }: &Served, ask: &Ask| {
+        api::region::region(region, older.as_ref(), state, base_map.as_ref(), ask)
+    };
+    app.answer(ask, Pace::Quick, work).await
+}
+
+/// Describes the interface.
+async fn openapi(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    app.answer(ask, Pace::Quick, |_, ask| api::openapi(ask)).await
 }
 
 #[cfg(test)]

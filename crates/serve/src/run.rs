@@ -24,6 +24,7 @@ use super::older::{Older, common};
 use super::options::{Limits, Options};
 use super::region::{Identity, Region};
 use super::routes;
+use super::served::Served;
 use crate::store::StoreError;
 use crate::words::Named as _;
 
@@ -92,14 +93,14 @@ impl Server {
             return Err(ServeError::Remote(options.addr));
         }
         let older = options.before.as_deref().map(|before| older(before, &options.db)).transpose()?;
-        let region = Region::open(&options.db, older)?.holding(options.limits.held_edges);
+        let region = Region::open(&options.db)?.holding(options.limits.held_edges);
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
         let listen = |source| ServeError::Listen { addr: options.addr, source };
         let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;
         let address = listener.local_addr()?;
         options.addr = address;
         let limits = options.limits;
-        let app = Arc::new(App::new(options, region));
+        let app = Arc::new(App::new(options, Served::new(region, older)));
         let router = routes::router(Arc::clone(&app));
         Ok(Self { runtime, listener, address, router, limits, app })
     }
@@ -132,7 +133,7 @@ fn older(before: &Path, db: &Path) -> Result<Older, ServeError> {
     if same_path || Identity::of(before)?.same_file(&Identity::of(db)?) {
         return Err(ServeError::SameFile(before.to_owned()));
     }
-    let (old, new) = (Region::open(before, None)?, Region::open(db, None)?);
+    let (old, new) = (Region::open(before)?, Region::open(db)?);
     if common(&old.sets, &new.sets).is_empty() {
         return Err(ServeError::NothingInCommon(Box::new([listed(before, &old), listed(db, &new)])));
     }

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
-use super::super::changes::{Changes, Kept};
+use super::super::changes::{Changes, Comparisons, Kept};
 use super::super::older::{Older, common};
 use super::super::problem::Problem;
 use super::super::region::Region;
@@ -17,13 +17,18 @@ const MOST: u32 = 5000;
 const USUAL: u32 = 2000;
 
 /// `/api/changes?vehicle=&policy=&bbox=&limit=`
-pub(in super::super) fn changes(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn changes(
+    region: &Region,
+    older: Option<&Older>,
+    comparisons: &Comparisons,
+    ask: &Ask,
+) -> Result<Stored, Problem> {
     ask.only(&["vehicle", "policy", "bbox", "limit"])?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let vehicle = ask.required("vehicle")?;
     let bbox = ask.bounds("bbox")?;
     let limit = ask.whole("limit", 1..=MOST)?.unwrap_or(USUAL) as usize;
-    let older = region.older.as_ref().ok_or_else(|| {
+    let older = older.ok_or_else(|| {
         Problem::not_found("there is no older database to compare with; `netcert serve --before OLD.gpkg` names one")
     })?;
     let old = older.region()?;
@@ -38,8 +43,7 @@ pub(in super::super) fn changes(region: &Region, ask: &Ask) -> Result<Stored, Pr
         )));
     }
     let before = old.certified(vehicle, policy)?;
-    let key = format!("{} {}", after.vehicle.id, policy.name());
-    let made = region.changes.get(&key, || Changes::between((old, &before), (region, &after), &ask.stop))?;
+    let made = comparisons.of(&before, &after, &ask.stop)?;
     let head = json!({
         "type": "FeatureCollection",
         "vehicle": after.vehicle.id,

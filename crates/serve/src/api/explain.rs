@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
+use super::super::memo::Recent;
 use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
@@ -22,16 +23,36 @@ use crate::stop::Stop;
 use crate::store::{QueryOptions, TurnsOf};
 use crate::words::Named;
 
+/// Number of explanations to keep. Each has a picture and shapes for the map of some 100 kB.
+const MOST_EXPLAINED: usize = 16;
+
 /// The members, the picture and the shapes for a map of one explanation.
-pub(in super::super) struct Explained {
+struct Explained {
     members: Value,
     picture: Option<String>,
     map: Value,
 }
 
+/// The last explanations, by id, vehicle and policy.
+pub(in super::super) struct Explanations(Recent<Explained>);
+
+impl Default for Explanations {
+    fn default() -> Self {
+        Self(Recent::new(MOST_EXPLAINED))
+    }
+}
+
+impl Explanations {
+    /// The explanation of an edge or turn. The first call makes it.
+    fn of(&self, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Arc<Explained>, Problem> {
+        let key = format!("{id} {} {}", certified.vehicle.id, certified.set.policy.name());
+        self.0.get(&key, || make(certified.region, id, certified, stop))
+    }
+}
+
 /// `/api/explain/{id}`
-pub(in super::super) fn explain(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    let (explained, id, certified) = explained(region, ask, &["vehicle", "policy", "relative_to"])?;
+pub(in super::super) fn explain(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+    let (explained, id, certified) = explained(region, explanations, ask, &["vehicle", "policy", "relative_to"])?;
     let Some(reference) = ask.parameter("relative_to") else { return Ok(answered(&explained.members)) };
     let mut members = explained.members.clone();
     members["relative"] = relative::of(region, id, &certified, reference)?;
@@ -39,8 +60,8 @@ pub(in super::super) fn explain(region: &Region, ask: &Ask) -> Result<Stored, Pr
 }
 
 /// `/api/explain/{id}/picture.svg`
-pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    let (explained, ..) = explained(region, ask, &["vehicle", "policy"])?;
+pub(in super::super) fn drawn(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+    let (explained, ..) = explained(region, explanations, ask, &["vehicle", "policy"])?;
     let Some(svg) = &explained.picture else {
         let headline = explained.members["headline"].as_str().unwrap_or_default();
         return Err(Problem::not_found(format!("there is nothing to draw: {headline}")));
@@ -49,14 +70,15 @@ pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Prob
 }
 
 /// `/api/explain/{id}/map.geojson`
-pub(in super::super) fn mapped(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    let (explained, ..) = explained(region, ask, &["vehicle", "policy"])?;
+pub(in super::super) fn mapped(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+    let (explained, ..) = explained(region, explanations, ask, &["vehicle", "policy"])?;
     Ok(Stored::new(GEOJSON, explained.map.to_string().into_bytes()))
 }
 
 /// The explanation, with the id and the set that it is of. `known` are the parameters that may be given.
 fn explained<'r>(
     region: &'r Region,
+    explanations: &Explanations,
     ask: &Ask,
     known: &[&str],
 ) -> Result<(Arc<Explained>, i64, Certified<'r>), Problem> {
@@ -64,9 +86,7 @@ fn explained<'r>(
     let id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
-    let key = format!("{id} {} {}", certified.vehicle.id, policy.name());
-    let made = region.explained.get(&key, || make(region, id, &certified, &ask.stop))?;
-    Ok((made, id, certified))
+    Ok((explanations.of(id, &certified, &ask.stop)?, id, certified))
 }
 
 fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Explained, Problem> {

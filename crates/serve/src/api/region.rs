@@ -1,14 +1,12 @@
 //! The description of what is served: the area, the extract, the certified vehicles, and the scope of `safe`.
 
-use std::sync::Arc;
-
-use axum::extract::State;
-use axum::response::Response;
 use serde_json::{Value, json};
 
-use super::super::app::{App, Pace};
+use super::super::answer::Stored;
 use super::super::ask::Ask;
-use super::super::options::Options;
+use super::super::older::Older;
+use super::super::options::BaseMap;
+use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::tiles::{MOST_ZOOM, backdrop};
 use super::{SCOPE, answered, changes};
@@ -21,19 +19,27 @@ use crate::words::Named;
 const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
 
 /// `/api/region`
-pub(in super::super) async fn region(State(app): State<Arc<App>>, ask: Ask) -> Response {
-    let options = app.options.clone();
-    app.answer(ask, Pace::Quick, move |region, ask| {
-        ask.only(&[])?;
-        let focus = region.read(Database::focus)?.or(region.extent);
-        let mut members = members(region, focus, &options);
-        members["left_hand_traffic"] = json!(region.read(Database::left_hand_traffic)?);
-        Ok(answered(&members))
-    })
-    .await
+pub(in super::super) fn region(
+    region: &Region,
+    older: Option<&Older>,
+    state: &str,
+    base_map: Option<&BaseMap>,
+    ask: &Ask,
+) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let focus = region.read(Database::focus)?.or(region.extent);
+    let mut members = members(region, older, state, base_map, focus);
+    members["left_hand_traffic"] = json!(region.read(Database::left_hand_traffic)?);
+    Ok(answered(&members))
 }
 
-fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
+fn members(
+    region: &Region,
+    older: Option<&Older>,
+    state: &str,
+    base_map: Option<&BaseMap>,
+    focus: Option<Bounds>,
+) -> Value {
     let ingest = region.ingest();
     let policies: Vec<&str> = Policy::ALL
         .iter()
@@ -54,19 +60,19 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
         "made_by": ingest.map(|run| run.netcert_version.as_str()),
         "made": ingest.map(|run| run.finished.as_str()),
         "database_hash": region.content,
-        "state": region.state,
+        "state": state,
         "attribution": ATTRIBUTION,
         "policies": policies,
         "default_policy": default,
         "vehicles_certified": certified,
-        "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
+        "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={state}"),
         "max_zoom": MOST_ZOOM,
         "backdrop": region.backdrop.then(|| json!({
-            "tiles": format!("/backdrop/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
+            "tiles": format!("/backdrop/{{z}}/{{x}}/{{y}}.mvt?state={state}"),
             "max_zoom": backdrop::MOST_ZOOM,
         })),
-        "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url, "attribution": map.attribution})),
-        "before": region.older.as_ref().map(|older| changes::members(older, region)),
+        "base_map": base_map.map(|map| json!({"url": map.url, "attribution": map.attribution})),
+        "before": older.map(|older| changes::members(older, region)),
         "scope": SCOPE,
     })
 }

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
-use super::super::planning::{Planned, Ride, Router, Sheets};
+use super::super::planning::{Planned, Planners, Ride, Router, Sheets};
 use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{GEOJSON, SCOPE, answered};
@@ -26,32 +26,32 @@ const PARAMETERS: [&str; 11] =
     ["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive", "conditions"];
 
 /// `/api/route`
-pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    Ok(answered(&planned(region, ask, &[])?.members))
+pub(in super::super) fn route(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+    Ok(answered(&planned(region, planners, ask, &[])?.members))
 }
 
 /// `/api/sheet.html`
-pub(in super::super) fn sheet_html(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_html(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
     let html: fn(&Sheets) -> &String = match ask.parameter("units").unwrap_or("metres") {
         "metres" => |sheets| &sheets.html,
         "feet" => |sheets| &sheets.html_in_feet,
         _ => return Err(Problem::parameter("units", "give metres or feet")),
     };
-    sheet(region, ask, &["units"], "text/html; charset=utf-8", html)
+    sheet(region, planners, ask, &["units"], "text/html; charset=utf-8", html)
 }
 
 /// `/api/sheet.csv`
-pub(in super::super) fn sheet_csv(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    sheet(region, ask, &[], "text/csv; charset=utf-8", |sheets| &sheets.csv)
+pub(in super::super) fn sheet_csv(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+    sheet(region, planners, ask, &[], "text/csv; charset=utf-8", |sheets| &sheets.csv)
 }
 
 /// `/api/sheet.geojson`
-pub(in super::super) fn sheet_geojson(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    sheet(region, ask, &[], GEOJSON, |sheets| &sheets.geojson)
+pub(in super::super) fn sheet_geojson(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+    sheet(region, planners, ask, &[], GEOJSON, |sheets| &sheets.geojson)
 }
 
 /// `/api/sheet.css`
-pub(in super::super) fn sheet_css(_: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_css(ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&[])?;
     Ok(Stored::new("text/css; charset=utf-8", picture::SHEET_STYLE.as_bytes().to_vec()))
 }
@@ -59,12 +59,13 @@ pub(in super::super) fn sheet_css(_: &Region, ask: &Ask) -> Result<Stored, Probl
 /// A sheet. `more` are parameters beside those of a route.
 fn sheet(
     region: &Region,
+    planners: &Planners,
     ask: &Ask,
     more: &[&str],
     kind: &'static str,
     form: fn(&Sheets) -> &String,
 ) -> Result<Stored, Problem> {
-    let planned = planned(region, ask, more)?;
+    let planned = planned(region, planners, ask, more)?;
     let Some(sheets) = &planned.sheets else {
         let detail = "there is no route under conditions between these places, so there is nothing to check; /api/route has the answer";
         return Err(Problem::not_found(detail));
@@ -73,7 +74,7 @@ fn sheet(
 }
 
 /// The answer to a question. The last ones are kept.
-fn planned(region: &Region, ask: &Ask, more: &[&str]) -> Result<Arc<Planned>, Problem> {
+fn planned(region: &Region, planners: &Planners, ask: &Ask, more: &[&str]) -> Result<Arc<Planned>, Problem> {
     ask.only(&[&PARAMETERS, more].concat())?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
@@ -93,10 +94,10 @@ fn planned(region: &Region, ask: &Ask, more: &[&str]) -> Result<Arc<Planned>, Pr
     }
     let key = format!("{} {} {measure:?}", vehicle.id, policy.name());
     let question = format!("{key} {:?} {} {}", ride.question, ride.drives, ride.conditions);
-    region.planned.get(&question, || {
-        let router = region.routers.get(&key, || Router::start(region, &certified, measure))?;
+    planners.planned.get(&question, || {
+        let router = planners.routers.get(&key, || Router::start(region, &certified, measure))?;
         let Some(answer) = router.ask(ride) else {
-            region.routers.forget(&key);
+            planners.routers.forget(&key);
             return Err(Problem::fault("the search for routes broke off"));
         };
         let mut planned = answer?;

@@ -34,8 +34,9 @@ use rayon::prelude::*;
 
 use super::answer::Stored;
 use super::ask::{self, Ask};
+use super::memo::Recent;
 use super::problem::Problem;
-use super::region::{MOST_OVERVIEWS, Region};
+use super::region::Region;
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
 use crate::rows::{MapEdge, MapNumbers, MapTurn, SetKey};
@@ -47,28 +48,31 @@ use encode::{Layer, Value};
 pub(super) use grid::MOST_ZOOM;
 use grid::{EXTENT, Place};
 use labels::{FIRST_WITH_LABELS, Label, labels};
-pub(super) use overview::{Overview, severity};
+use overview::Overview;
+pub(super) use overview::severity;
 
 /// The media type: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";
 
+/// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
+const MOST_OVERVIEWS: usize = 6;
 /// From this zoom on, edges have all their tags. At lower zooms a tile holds thousands of edges, so tags that the map does
 /// not use are left out.
 const FIRST_IN_FULL: u8 = 13;
 
 /// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
-pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(super) fn tile(region: &Region, overviews: &Overviews, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&[])?;
     let policy = ask::policy(ask.name("policy")?)?;
     let vehicle = region.certified(ask.name("vehicle")?, policy)?.vehicle;
     let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
-    Ok(Stored::new(KIND, bytes(region, SetKey { vehicle: &vehicle.id, policy }, place)?))
+    Ok(Stored::new(KIND, bytes(region, overviews, SetKey { vehicle: &vehicle.id, policy }, place)?))
 }
 
-fn bytes(region: &Region, set: SetKey<'_>, place: Place) -> Result<Vec<u8>, Problem> {
+fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, place: Place) -> Result<Vec<u8>, Problem> {
     if place.z <= overview::LAST_ZOOM {
         let mut bytes = Vec::new();
-        overview_of(region, set)?.layer(place).finish(&mut bytes);
+        overviews.of(region, set)?.layer(place).finish(&mut bytes);
         return Ok(bytes);
     }
     let bounds = place.bounds();
@@ -110,22 +114,33 @@ fn bytes(region: &Region, set: SetKey<'_>, place: Place) -> Result<Vec<u8>, Prob
     Ok(bytes)
 }
 
-/// Makes the overviews in advance, for the first [`MOST_OVERVIEWS`] sets of certificates.
-pub(super) fn prepare(region: &Region, stop: &Stop) -> Result<(), Problem> {
-    for set in region.sets.iter().take(MOST_OVERVIEWS) {
-        stop.check()?;
-        overview_of(region, SetKey { vehicle: &set.vehicle_id, policy: set.policy })?;
+/// The last overviews, by vehicle and policy.
+pub(super) struct Overviews(Recent<Overview>);
+
+impl Default for Overviews {
+    fn default() -> Self {
+        Self(Recent::new(MOST_OVERVIEWS))
     }
-    Ok(())
 }
 
-/// The overview of a set, from which tiles of low zooms are made. The first call makes it.
-fn overview_of(region: &Region, set: SetKey<'_>) -> Result<Arc<Overview>, Problem> {
-    let key = format!("{} {}", set.vehicle, set.policy.name());
-    region.overviews.get(&key, || {
-        let rows = region.read(|database| database.main_roads(set, classes(overview::LAST_ZOOM)))?;
-        Ok(Overview::new(&rows))
-    })
+impl Overviews {
+    /// Makes the overviews in advance, for the first [`MOST_OVERVIEWS`] sets of certificates.
+    pub(super) fn prepare(&self, region: &Region, stop: &Stop) -> Result<(), Problem> {
+        for set in region.sets.iter().take(MOST_OVERVIEWS) {
+            stop.check()?;
+            self.of(region, SetKey { vehicle: &set.vehicle_id, policy: set.policy })?;
+        }
+        Ok(())
+    }
+
+    /// The overview of a set, from which tiles of low zooms are made. The first call makes it.
+    fn of(&self, region: &Region, set: SetKey<'_>) -> Result<Arc<Overview>, Problem> {
+        let key = format!("{} {}", set.vehicle, set.policy.name());
+        self.0.get(&key, || {
+            let rows = region.read(|database| database.main_roads(set, classes(overview::LAST_ZOOM)))?;
+            Ok(Overview::new(&rows))
+        })
+    }
 }
 
 fn drawn(line: &[LonLat], place: Place) -> Vec<Vec<[i32; 2]>> {

@@ -36,7 +36,7 @@ const MOST_STEPS: i64 = 4;
 const LEAST_STEPS: i64 = -5;
 
 /// The main roads of a region under a vehicle's certificates.
-pub(in super::super) struct Overview {
+pub(super) struct Overview {
     /// Sorted by class, the most important first.
     roads: Vec<Road>,
     /// The verdicts with their reasons. `Said::verdict` is an index into them.
@@ -53,7 +53,7 @@ struct Road {
 impl Overview {
     /// The roads of the overview, simplified for [`LAST_ZOOM`]. The two directions of a road get lines of the same order of
     /// points, so that they coincide.
-    pub(in super::super) fn new(rows: &[MainRoad]) -> Self {
+    pub(super) fn new(rows: &[MainRoad]) -> Self {
         let mut verdicts: Vec<Verdict> = rows.iter().map(|row| row.verdict).collect();
         verdicts.sort_unstable_by_key(|&verdict| (severity(verdict), verdict_words(verdict)));
         verdicts.dedup();
