@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueHint};
 use netcert::cluster::{ABOUT, Origin, RegionFolder, TASKS, TaskWriter};
-use netcert::export::{ExportError, Layout, Out, Place, Unfinished};
+use netcert::export::{Destination, ExportError, Layout, Out, Unfinished};
 use netcert::pipeline::{self, EDGES_OF_A_TASK, RunError};
 
 use super::Session;
@@ -66,23 +66,23 @@ impl Cells {
         let unfinished = Unfinished::default();
         let on_disk = unfinished.clone();
         when_stopped(move || on_disk.remove());
-        let mut place = Place::begin(Out::Path(self.out.clone()), LAYOUT, unfinished)?;
-        let mut table = TaskWriter::begin(place.create(TASKS)?)?;
+        let mut destination = Destination::begin(Out::Path(self.out.clone()), LAYOUT, unfinished)?;
+        let mut table = TaskWriter::begin(destination.create(TASKS)?)?;
         let divided = pipeline::divide(&self.input, &countries, self.edges_at_once, &session.progress, |task| {
             table.push(task).map_err(Failed::from)
         });
         let divided = match divided {
             Ok(divided) => divided,
             Err(Failed::Run(error)) => bail!(error),
-            Err(Failed::Export(error)) => bail!(place.name(error)),
+            Err(Failed::Export(error)) => bail!(destination.name(error)),
         };
-        table.close().map_err(|error| place.name(error))?;
+        table.close().map_err(|error| destination.name(error))?;
         let (tasks, edges) = (divided.tasks, divided.edges);
         let (country, driving_side, roads) = self.roads.given();
         let origin = Origin { extract, country, driving_side, roads };
         let about = RegionFolder { divided, edges_at_once: self.edges_at_once, origin };
-        place.write_whole(ABOUT, about.text().as_bytes()).map_err(|error| place.name(error))?;
-        place.finish()?;
+        destination.write_whole(ABOUT, about.text().as_bytes()).map_err(|error| destination.name(error))?;
+        destination.finish()?;
         session.progress.say(&format!(
             "{}: {} directed edges in {} {}",
             self.out.display(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
-use netcert::manoeuvres::{self, Finding, Measure, Report, STEADY_RADII_M, Swept, beyond_limit};
+use netcert::manoeuvres::{self, Finding, Measure, Report, STEADY_RADII_M, TurnMeasurements, beyond_limit};
 use netcert::picture;
 use netcert::vehicle::Vehicle;
 use serde_json::{Value, json};
@@ -86,7 +86,7 @@ fn passes(report: &Report, measure: Measure, who: &str) -> &'static str {
 }
 
 /// The swept width; a dash if a body passes the centre of the turn.
-fn width(swept: &Swept) -> String {
+fn width(swept: &TurnMeasurements) -> String {
     swept.width_m.map_or("–".to_owned(), |metres| format!("{metres:.2} m"))
 }
 
@@ -234,7 +234,7 @@ fn angles(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
 
 fn json(v: &Vehicle, r: &Report) -> Value {
     let degrees = |angles: &[f64]| angles.iter().map(|a| a.to_degrees()).collect::<Vec<f64>>();
-    let swept = |s: &Swept| {
+    let swept = |s: &TurnMeasurements| {
         json!({
             "guide": manoeuvres::Guide::OuterSteerTyre.words(),
             "swept_path_m": s.width_m,

@@ -6,7 +6,7 @@ use netcert_testing::xml;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use netcert::manoeuvres::{self, Finding, Guide, Measure, Sureness, Swept, Turn, beyond_limit};
+use netcert::manoeuvres::{self, Finding, Guide, Measure, Sureness, Turn, TurnMeasurements, beyond_limit};
 use netcert::picture;
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert_testing::oracle::turns;
@@ -56,7 +56,7 @@ fn steer_axle_guides_reach_the_steady_circle() {
     let axle = drive.poses.last().unwrap()[1].axle;
     let radius = axle[0].hypot(axle[1] - 25.0);
     assert!((radius - (625.0 - k).sqrt()).abs() < 1e-3, "{radius}");
-    let swept = Swept::of(&semi, &drive);
+    let swept = TurnMeasurements::of(&semi, &drive);
     assert!((swept.offtracking_m - (25.0 - radius)).abs() < 1e-3);
 }
 
@@ -81,7 +81,7 @@ fn swept_paths_and_tail_swings_of_the_pbs_turn() {
     ];
     for (id, width, tail, hinge_deg) in table {
         let vehicle = catalogued(id);
-        let swept = Swept::of(&vehicle, &manoeuvres::right_angle(&vehicle).drive(&vehicle));
+        let swept = TurnMeasurements::of(&vehicle, &manoeuvres::right_angle(&vehicle).drive(&vehicle));
         assert!((swept.width_m.unwrap() - width).abs() < 0.015, "{id}: {:?}, table {width}", swept.width_m);
         assert!((swept.tail_swing_m - tail).abs() < 0.01, "{id}: {}, table {tail}", swept.tail_swing_m);
         let most = swept.angles_rad[1..].iter().fold(0.0f64, |m, a| m.max(*a)).to_degrees();
@@ -92,7 +92,7 @@ fn swept_paths_and_tail_swings_of_the_pbs_turn() {
 #[test]
 fn the_oracle_sweeps_the_same_width() {
     for vehicle in Catalogue::builtin().unwrap().iter() {
-        let ours = Swept::of(vehicle, &manoeuvres::right_angle(vehicle).drive(vehicle)).width_m;
+        let ours = TurnMeasurements::of(vehicle, &manoeuvres::right_angle(vehicle).drive(vehicle)).width_m;
         let turn = turns::Turn::new(12.5, FRAC_PI_2, vehicle.length_m + 5.0, 2.0 * vehicle.length_m + 10.0);
         let theirs = turns::swept_width_m(vehicle, &turn);
         let ours = ours.unwrap_or_else(|| panic!("{}: past the centre", vehicle.id));

@@ -5,7 +5,7 @@ use super::hints::{self, Hints};
 use super::legal::Conflict;
 use super::no_bound;
 use super::ride::Ride;
-use super::tightest::{HingePlace, Place};
+use super::tightest::{HingePlace, LimitingPlace};
 use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
@@ -168,7 +168,7 @@ fn seen_from(
     let (span, result) = (spans.get(which)?.clone(), results.into_iter().nth(which)?);
     certificate.result = result.clone();
     let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
-    let place = Place::of(corridor, &ride, &model.vehicle, &result)?;
+    let place = LimitingPlace::of(corridor, &ride, &model.vehicle, &result)?;
     let hinge = HingePlace::of(corridor, &ride, &model.vehicle, &span, &result)?;
     let (frame, corridor, tapers) = (None, corridor.clone(), Vec::new());
     Some(Geometry { frame, corridor, span, result, certificate, ride, place, hinge, tapers })

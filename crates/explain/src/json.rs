@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use super::words::words;
-use super::{Explanation, Geometry, KerbHint, Part, ShorterHint};
+use super::{BodyPart, Explanation, Geometry, KerbHint, ShorterHint};
 use crate::osm::facts::WidthSource;
 use crate::vehicle::Vehicle;
 use netcert_base::words::{Named as _, verdict_words};
@@ -85,12 +85,12 @@ fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
 }
 
 /// The name of a part of a body, and its distance ahead of the axle, metres.
-pub(super) fn body_part(part: Part) -> (&'static str, Option<f64>) {
+pub(super) fn body_part(part: BodyPart) -> (&'static str, Option<f64>) {
     match part {
-        Part::FrontCorner => ("front_corner", None),
-        Part::RearCorner => ("rear_corner", None),
-        Part::Axle => ("axle", Some(0.0)),
-        Part::Side(m) => ("side", Some(m)),
+        BodyPart::FrontCorner => ("front_corner", None),
+        BodyPart::RearCorner => ("rear_corner", None),
+        BodyPart::Axle => ("axle", Some(0.0)),
+        BodyPart::Side(m) => ("side", Some(m)),
     }
 }
 

@@ -56,7 +56,7 @@ pub use legal::Conflict;
 pub use names::cautious_m;
 pub use own_corridor::explain_corridor;
 pub use ride::Ride;
-pub use tightest::{Bend, Cross, HingePlace, Part, Place};
+pub use tightest::{Bend, BodyPart, Cross, HingePlace, LimitingPlace};
 pub use turn::{TurnExplanation, explain_turn};
 pub use words::{Words, words};
 
@@ -156,7 +156,7 @@ pub struct Geometry {
     /// The poses of all units along the plan.
     pub ride: Ride,
     /// The place of the least leeway.
-    pub place: Place,
+    pub place: LimitingPlace,
     /// The place of the least hinge margin.
     pub hinge: HingePlace,
     /// The changes of the strip from one cross section to the next. Empty in a turn and in a corridor of the user's.

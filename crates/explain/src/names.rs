@@ -1,7 +1,7 @@
 //! Names for sentences (strips, units, corners, hinges, sources of widths), and amounts that are rounded to the cautious
 //! side.
 
-use super::{Explanation, Part, Place};
+use super::{BodyPart, Explanation, LimitingPlace};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::vehicle::Vehicle;
 use netcert_base::words::Named as _;
@@ -46,14 +46,14 @@ pub(super) fn strip_name(policy: Policy) -> &'static str {
 impl Explanation {
     /// The name of a place on a unit, such as `rear left corner of trailer 2 (unit 4 of 6)`.
     #[must_use]
-    pub fn corner(&self, place: &Place) -> String {
+    pub fn corner(&self, place: &LimitingPlace) -> String {
         let side = place.side.name();
         let part = match place.part {
-            Part::FrontCorner => format!("front {side} corner"),
-            Part::RearCorner => format!("rear {side} corner"),
-            Part::Axle => format!("{side} side, at the axle,"),
-            Part::Side(m) if m > 0.0 => format!("{side} side, {m:.1} m ahead of the axle,"),
-            Part::Side(m) => format!("{side} side, {:.1} m behind the axle,", -m),
+            BodyPart::FrontCorner => format!("front {side} corner"),
+            BodyPart::RearCorner => format!("rear {side} corner"),
+            BodyPart::Axle => format!("{side} side, at the axle,"),
+            BodyPart::Side(m) if m > 0.0 => format!("{side} side, {m:.1} m ahead of the axle,"),
+            BodyPart::Side(m) => format!("{side} side, {:.1} m behind the axle,", -m),
         };
         format!("{part} of {}", unit_name(&self.vehicle, place.unit))
     }

@@ -19,7 +19,7 @@ const FAR_LENGTHS: f64 = 1.6;
 
 /// A part of a unit's side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Part {
+pub enum BodyPart {
     /// The front corner.
     FrontCorner,
     /// The rear corner.
@@ -41,7 +41,7 @@ pub struct Bend {
 
 /// The place of the least leeway, with the vehicle's nominal poses at that moment.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub struct LimitingPlace {
     /// The station on whose normal the corner is.
     pub station: f64,
     /// Index of the unit.
@@ -49,7 +49,7 @@ pub struct Place {
     /// The edge of the corridor.
     pub side: Side,
     /// The part of the unit.
-    pub part: Part,
+    pub part: BodyPart,
     /// The station of the steer axle at that moment. It is beyond the last station if the vehicle is leaving the corridor.
     pub head: f64,
     /// The poses of all units, front to rear.
@@ -87,7 +87,7 @@ pub struct HingePlace {
     pub limit_rad: f64,
 }
 
-impl Place {
+impl LimitingPlace {
     pub(super) fn of(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
         let limiting = &result.limiting;
         if limiting.in_area {
@@ -118,7 +118,7 @@ impl Place {
             station,
             unit: limiting.unit,
             side: limiting.side,
-            part: Part::of(unit, limiting.point_m),
+            part: BodyPart::of(unit, limiting.point_m),
             head,
             poses,
             corner,
@@ -132,7 +132,7 @@ impl Place {
     }
 }
 
-impl Place {
+impl LimitingPlace {
     /// The place of the limiting unit's side that comes closest to the boundary of the areas.
     fn in_area(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
         let limiting = &result.limiting;
@@ -168,7 +168,7 @@ impl Place {
             station,
             unit: limiting.unit,
             side: limiting.side,
-            part: Part::of(unit, ahead),
+            part: BodyPart::of(unit, ahead),
             head: head as f64,
             poses,
             corner,
@@ -240,7 +240,7 @@ impl HingePlace {
     }
 }
 
-impl Part {
+impl BodyPart {
     fn of(unit: &Unit, point_m: f64) -> Self {
         let near = |place_m: f64| (point_m - place_m).abs() < 1e-6;
         match () {

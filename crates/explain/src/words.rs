@@ -3,7 +3,7 @@
 use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
-use super::{Explanation, Geometry, HingePlace, Part, Place};
+use super::{BodyPart, Explanation, Geometry, HingePlace, LimitingPlace};
 use crate::corridor::{Taper, TaperCause};
 use crate::network::destination_words;
 use crate::vehicle::Vehicle;
@@ -83,7 +83,7 @@ fn who(e: &Explanation, g: &Geometry) -> String {
     format!("{}, {}", e.corner(&g.place), bend(&g.place))
 }
 
-fn bend(place: &Place) -> String {
+fn bend(place: &LimitingPlace) -> String {
     match place.bend {
         None => "on a straight".to_owned(),
         Some(bend) => {
@@ -143,7 +143,7 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
     reasons
 }
 
-fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String {
+fn gap(e: &Explanation, (place, bounds_m): (&LimitingPlace, f64), strip: &str) -> String {
     let source = e.road.as_ref().and_then(|road| {
         let said = source_words(road.width_source?);
         let tags = road.width_tags.join(", ");
@@ -155,7 +155,7 @@ fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String
     } else {
         format!("stands {:.2} m beyond its edge", -place.nominal_m)
     };
-    let part = if matches!(place.part, Part::FrontCorner | Part::RearCorner) { "corner" } else { "side" };
+    let part = if matches!(place.part, BodyPart::FrontCorner | BodyPart::RearCorner) { "corner" } else { "side" };
     let there = match place.width_m {
         Some(width_m) => format!("The {strip} is {width_m:.2} m wide there{source}"),
         None => "The edge of the junction's area counts there".to_owned(),

@@ -41,7 +41,7 @@ pub enum Out {
 }
 
 /// An output that is being written.
-pub struct Place {
+pub struct Destination {
     kind: Kind,
     /// Held until the output is renamed.
     lock: Option<OutputLock>,
@@ -54,7 +54,7 @@ enum Kind {
     Folder { target: PathBuf, part: PathBuf },
 }
 
-impl Place {
+impl Destination {
     /// Begins an output.
     ///
     /// # Errors
@@ -166,7 +166,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for Destination {
     fn drop(&mut self) {
         // An error is ignored, because the next export clears the part.
         let _ = match &self.kind {

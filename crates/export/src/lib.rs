@@ -4,7 +4,7 @@
 //!   refused.
 //! - A header in or beside every output says what the permits depend on ([`Header`]).
 //! - Rows are streamed in order of the network, and the same input gives the same bytes.
-//! - An output is complete or absent ([`Place`]).
+//! - An output is complete or absent ([`Destination`]).
 //!
 //! | file | for |
 //! | --- | --- |
@@ -48,7 +48,7 @@ mod unfinished;
 mod ways;
 
 pub use ask::Ask;
-pub use destination::{Layout, Out, Place, Sink};
+pub use destination::{Destination, Layout, Out, Sink};
 pub use error::ExportError;
 pub use formats::Target;
 pub use header::{Header, Provenance};
@@ -68,15 +68,15 @@ pub fn export(
     (out, unfinished): (Out, Unfinished),
 ) -> Result<(), ExportError> {
     formats::check_reference(target, source.ask.relative_to.as_deref())?;
-    let mut place = Place::begin(out, target.layout(options), unfinished)?;
-    let written = target.write(source, options, &mut place).and_then(|()| {
-        if place.is_folder() {
-            place.write_whole("netcert.json", format!("{:#}\n", source.header.json()).as_bytes())?;
+    let mut destination = Destination::begin(out, target.layout(options), unfinished)?;
+    let written = target.write(source, options, &mut destination).and_then(|()| {
+        if destination.is_folder() {
+            destination.write_whole("netcert.json", format!("{:#}\n", source.header.json()).as_bytes())?;
         }
         Ok(())
     });
     match written {
-        Ok(()) => place.finish(),
-        Err(error) => Err(place.name(error)),
+        Ok(()) => destination.finish(),
+        Err(error) => Err(destination.name(error)),
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn ids(steps: &[i64]) -> Vec<i64> {
 
 /// A stretch of a way between two junctions.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Piece {
+pub(super) struct WayStretch {
     /// Index of the first node in the way's references.
     pub(super) first: usize,
     /// Index of the last node in the way's references.
@@ -58,8 +58,8 @@ pub(super) struct Piece {
 pub(super) enum OnWay {
     /// There are none; the way is no road of the network.
     Nothing,
-    /// The pieces in way order. They overlap only at their ends.
-    Pieces(Vec<Piece>),
+    /// The stretches in way order. They overlap only at their ends.
+    Stretches(Vec<WayStretch>),
     /// The way has these edges, but their places are not clear.
     Unclear(Vec<u32>),
 }
@@ -123,7 +123,7 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
         line.dedup_by_key(|node| node.1);
         line
     };
-    let mut pieces = Vec::new();
+    let mut stretches = Vec::new();
     let mut at = 0;
     for both in rows.chunk_by(|a, b| a.shape_start == b.shape_start) {
         let Some(place) = place_of(both, &line, at) else {
@@ -134,12 +134,12 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
         let [along, against] = [of(Direction::Forward), of(Direction::Backward)];
         let (edges, rsc_m) =
             ([along, against].map(|row| row.map(|row| row.edge)), [along, against].map(|row| row?.rsc_m));
-        pieces.push(Piece { first: line[place].0, last: line[at].0, edges, rsc_m });
+        stretches.push(WayStretch { first: line[place].0, last: line[at].0, edges, rsc_m });
     }
-    OnWay::Pieces(pieces)
+    OnWay::Stretches(stretches)
 }
 
-/// The index on the line at which a piece starts: where the last piece ended, or, after nodes that the file lacks, the only
+/// The index on the line at which a stretch starts: where the last stretch ended, or, after nodes that the file lacks, the only
 /// matching place.
 fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize> {
     let row = both.first()?;
@@ -212,9 +212,9 @@ mod tests {
 
     use Direction::{Backward, Forward};
 
-    fn pieces(rows: &[EdgeStep], refs: &[i64]) -> Vec<(usize, usize)> {
+    fn stretches(rows: &[EdgeStep], refs: &[i64]) -> Vec<(usize, usize)> {
         match on_way(rows, refs) {
-            OnWay::Pieces(pieces) => pieces.iter().map(|piece| (piece.first, piece.last)).collect(),
+            OnWay::Stretches(stretches) => stretches.iter().map(|stretch| (stretch.first, stretch.last)).collect(),
             _ => Vec::new(),
         }
     }
@@ -222,9 +222,9 @@ mod tests {
     #[test]
     fn edges_lie_one_after_the_other_along_their_way() {
         let rows = [row(0, 0, 3, [1, 3], Forward), row(1, 0, 3, [3, 1], Backward), row(2, 2, 2, [3, 4], Forward)];
-        assert_eq!(pieces(&rows, &[1, 2, 3, 4]), [(0, 2), (2, 3)]);
-        assert_eq!(pieces(&rows, &[1, 2, 2, 3, 4]), [(0, 3), (3, 4)]);
-        let OnWay::Pieces(found) = on_way(&rows, &[1, 2, 3, 4]) else { panic!() };
+        assert_eq!(stretches(&rows, &[1, 2, 3, 4]), [(0, 2), (2, 3)]);
+        assert_eq!(stretches(&rows, &[1, 2, 2, 3, 4]), [(0, 3), (3, 4)]);
+        let OnWay::Stretches(found) = on_way(&rows, &[1, 2, 3, 4]) else { panic!() };
         assert_eq!([found[0].edges, found[1].edges], [[Some(0), Some(1)], [Some(2), None]]);
     }
 
@@ -232,7 +232,7 @@ mod tests {
     fn nodes_that_the_file_lacks_are_passed_over_where_that_is_clear() {
         // Node 9 is missing from the extract, so the network has edges 1-2 and 3-4.
         assert_eq!(
-            pieces(&[row(0, 0, 2, [1, 2], Forward), row(1, 2, 2, [3, 4], Forward)], &[1, 2, 9, 3, 4]),
+            stretches(&[row(0, 0, 2, [1, 2], Forward), row(1, 2, 2, [3, 4], Forward)], &[1, 2, 9, 3, 4]),
             [(0, 1), (3, 4)]
         );
         // The way runs twice along a loop behind a missing node, so the edge's place is not clear.
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn a_way_that_meets_itself_keeps_its_order() {
         let rows = [row(0, 0, 3, [1, 1], Forward), row(1, 2, 2, [1, 4], Forward)];
-        assert_eq!(pieces(&rows, &[1, 2, 1, 4]), [(0, 2), (2, 3)]);
+        assert_eq!(stretches(&rows, &[1, 2, 1, 4]), [(0, 2), (2, 3)]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
 use super::{Bounds, Frame, Point, View, bodies, scale_bar};
 use netcert_base::vehicle::Vehicle;
-use netcert_explain::manoeuvres::{self, Drive, Finding, Measure, RADIUS_M, Report, Swept, Turn};
+use netcert_explain::manoeuvres::{self, Drive, Finding, Measure, RADIUS_M, Report, Turn, TurnMeasurements};
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 28.0;
@@ -61,7 +61,7 @@ fn heading(picture: &mut Picture, frame: Frame, title: &str, guide: &str) {
     picture.text([frame.x, frame.y - 8.0], &format!("{guide} follows the blue path"), style);
 }
 
-fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &Swept, frame: Frame) {
+fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &TurnMeasurements, frame: Frame) {
     let degrees = turn.angle_rad.to_degrees();
     heading(picture, frame, &format!("{degrees:.0}° at {RADIUS_M} m"), turn.guide.words());
     let drive = turn.drive(vehicle);
@@ -95,7 +95,7 @@ fn seen(drive: &Drive, turn: &Turn) -> impl Iterator<Item = f64> + Clone + use<>
 }
 
 /// Place of the guide when the inner side of the unit that cuts in most passes the widest place, approximately.
-fn moment(drive: &Drive, swept: &Swept) -> f64 {
+fn moment(drive: &Drive, swept: &TurnMeasurements) -> f64 {
     let place = beside(&drive.turn, swept.width_at_m, swept.extent_m[0]);
     let near = |poses: &[crate::stet::motion::Pose]| {
         poses.last().map_or(f64::INFINITY, |pose| (pose.axle[0] - place[0]).hypot(pose.axle[1] - place[1]))
@@ -187,7 +187,7 @@ fn circle(picture: &mut Picture, vehicle: &Vehicle, report: &Report, frame: Fram
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
 }
 
-fn width(swept: &Swept) -> String {
+fn width(swept: &TurnMeasurements) -> String {
     swept.width_m.map_or("past the centre".to_owned(), |metres| format!("{metres:.2} m"))
 }
 
@@ -201,7 +201,7 @@ fn undrivable(vehicle: &Vehicle, angles_rad: &[f64]) -> Option<String> {
     })
 }
 
-fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &Swept, findings: &[Finding]) {
+fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &TurnMeasurements, findings: &[Finding]) {
     let hinge = swept.angles_rad.iter().skip(1).fold(0.0_f64, |most, &a| most.max(a)).to_degrees();
     let steering = swept.angles_rad.first().map_or(0.0, |a| a.to_degrees());
     let mut lines = vec![

@@ -82,8 +82,8 @@ impl Default for Planners {
     }
 }
 
-/// What one planner is made from.
-struct Wanted {
+/// The thread of one planner: what it answers from.
+struct PlannerThread {
     roads: Arc<Roads>,
     driver: Arc<Driver>,
     measure: Measure,
@@ -101,9 +101,9 @@ impl Router {
             })?;
         let driver = driver.map_err(|error| Problem::fault(error.to_string()))?;
         let speeds = Speeds::builtin().map_err(|error| Problem::fault(error.to_string()))?;
-        let wanted = Wanted { roads, driver, measure, speeds };
+        let planner = PlannerThread { roads, driver, measure, speeds };
         let (questions, asked) = mpsc::sync_channel(MOST_WAITING);
-        let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || wanted.serve(&asked));
+        let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || planner.serve(&asked));
         thread.map_err(|error| Problem::busy(format!("no thread for routes: {error}")))?;
         Ok(Self { questions })
     }
@@ -116,7 +116,7 @@ impl Router {
     }
 }
 
-impl Wanted {
+impl PlannerThread {
     fn serve(&self, asked: &mpsc::Receiver<(Ride, Reply)>) {
         loop {
             let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure);

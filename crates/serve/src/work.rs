@@ -37,9 +37,9 @@ impl Drop for Waiting<'_> {
 }
 
 /// Tells work to stop when nobody waits for it any more.
-struct Wanted(Stop);
+struct StopOnDrop(Stop);
 
-impl Drop for Wanted {
+impl Drop for StopOnDrop {
     fn drop(&mut self) {
         self.0.tell();
     }
@@ -90,8 +90,8 @@ impl Lane {
                 }
             }
         };
-        let (wanted, started) = (Wanted(Stop::default()), Instant::now());
-        let stop = wanted.0.clone();
+        let (awaited, started) = (StopOnDrop(Stop::default()), Instant::now());
+        let stop = awaited.0.clone();
         let done = tokio::task::spawn_blocking(move || {
             let _place = place;
             work(stop)

@@ -2,7 +2,7 @@
 //!
 //! A pass here is no approval: assessments use the real bodies, tyres and axle groups.
 
-use super::measure::{Ring, Swept, beyond_limit};
+use super::measure::{Ring, TurnMeasurements, beyond_limit};
 use crate::vehicle::Vehicle;
 
 /// The quantity that a limit bounds.
@@ -138,7 +138,7 @@ const LIMITS: [Limit; 14] = [
 
 /// Compares the measured values with every limit for such a vehicle. A vehicle whose name contains "bus" is a bus.
 #[must_use]
-pub fn findings(vehicle: &Vehicle, right_angle: &Swept, circle: &Ring) -> Vec<Finding> {
+pub fn findings(vehicle: &Vehicle, right_angle: &TurnMeasurements, circle: &Ring) -> Vec<Finding> {
     let bus = vehicle.name.to_lowercase().contains("bus");
     let turned = beyond_limit(vehicle, &right_angle.angles_rad).is_none();
     let circled = beyond_limit(vehicle, &circle.angles_rad).is_none();

@@ -14,7 +14,7 @@ const BIN_M: f64 = 0.1;
 
 /// Measurements of a turn of 90° or 180°.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swept {
+pub struct TurnMeasurements {
     /// Swept path width, metres: the greatest distance between the innermost and the outermost point of any body, along
     /// normals of the path. `None` if a body passes the arc's centre, where normals cross and the width is undefined.
     pub width_m: Option<f64>,
@@ -61,7 +61,7 @@ impl Ring {
     }
 }
 
-impl Swept {
+impl TurnMeasurements {
     /// Measures a turn.
     #[must_use]
     pub fn of(vehicle: &Vehicle, drive: &Drive) -> Self {

@@ -20,7 +20,7 @@ use crate::stet::steady_offtracking;
 use crate::vehicle::Vehicle;
 
 pub use limits::{Finding, Limit, Measure, Sureness, findings};
-pub use measure::{Ring, Swept, beyond_limit};
+pub use measure::{Ring, TurnMeasurements, beyond_limit};
 pub use turn::{Drive, Guide, Turn};
 
 /// Radius of the path that PBS and the European circle prescribe, metres.
@@ -32,9 +32,9 @@ pub const STEADY_RADII_M: [f64; 5] = [12.5, 25.0, 50.0, 100.0, 200.0];
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// 90° at 12.5 m, with the outer end of the steer axle (the outer side of the outer steer tyre) on the path.
-    pub right_angle: Swept,
+    pub right_angle: TurnMeasurements,
     /// 180° at 12.5 m with the same guide.
-    pub u_turn: Swept,
+    pub u_turn: TurnMeasurements,
     /// A full circle: the outer front corner arrives along the tangent and then keeps to 12.5 m.
     pub circle: Ring,
     /// Steady offtracking of the last axle relative to the steer axle at each of [`STEADY_RADII_M`], metres. `None`
@@ -47,8 +47,8 @@ pub struct Report {
 /// Drives all manoeuvres and measures them.
 #[must_use]
 pub fn report(vehicle: &Vehicle) -> Report {
-    let right_angle = Swept::of(vehicle, &right_angle(vehicle).drive(vehicle));
-    let u_turn = Swept::of(vehicle, &u_turn(vehicle).drive(vehicle));
+    let right_angle = TurnMeasurements::of(vehicle, &right_angle(vehicle).drive(vehicle));
+    let u_turn = TurnMeasurements::of(vehicle, &u_turn(vehicle).drive(vehicle));
     let circle = Ring::of(vehicle, &circle(vehicle).drive(vehicle));
     let findings = findings(vehicle, &right_angle, &circle);
     let steady_offtracking_m = STEADY_RADII_M.map(|radius_m| steady_offtracking(vehicle, radius_m));

@@ -9,7 +9,7 @@ use std::io::Write as _;
 
 use super::closures::{self, polygon};
 use super::{Options, Target};
-use crate::{ExportError, Layout, Place, Source};
+use crate::{Destination, ExportError, Layout, Source};
 
 /// `graphhopper`
 pub(super) struct GraphHopper;
@@ -30,8 +30,8 @@ impl Target for GraphHopper {
         Layout::File
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let mut sink = place.create("custom_model.json")?;
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        let mut sink = destination.create("custom_model.json")?;
         if source.permitted.edge_tally.refused.is_empty() {
             // An area must have a polygon.
             writeln!(sink, "{{\"priority\":[],\"areas\":{{\"type\":\"FeatureCollection\",\"features\":[]}}}}")?;

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use super::layers::{Row, asked};
 use super::{Layer, Options, Target};
 use crate::rows::Column;
-use crate::{ExportError, Layout, Place, Sink, Source};
+use crate::{Destination, ExportError, Layout, Sink, Source};
 
 /// A file of one layer that is being written.
 pub(super) trait LayerFormat: Sized + 'static {
@@ -34,7 +34,7 @@ pub(super) struct Table<'t> {
     pub(super) columns: Vec<Column>,
     pub(super) source: &'t Source<'t>,
     /// For temporary files.
-    pub(super) place: &'t Place,
+    pub(super) destination: &'t Destination,
 }
 
 /// The target of a format: a file for one layer, a folder for both.
@@ -64,10 +64,10 @@ impl<F: LayerFormat> Target for LayerFiles<F> {
         true
     }
 
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
+    fn write(&self, source: &Source<'_>, options: &Options, destination: &mut Destination) -> Result<(), ExportError> {
         for layer in asked(options) {
-            let sink = place.create(&format!("{}.{}", layer.name(), F::ENDING))?;
-            let table = Table { layer, columns: layer.columns(source), source, place };
+            let sink = destination.create(&format!("{}.{}", layer.name(), F::ENDING))?;
+            let table = Table { layer, columns: layer.columns(source), source, destination };
             let mut file = F::open(&table, sink)?;
             layer.each(source, |row| file.row(&table, row))?;
             file.close(&table)?;

@@ -1,7 +1,7 @@
 //! The targets. Each is a file or folder of this module and is listed in [`TARGETS`].
 //!
 //! To add a target, implement [`Target`] in a new file, and add it to [`TARGETS`] and to the list in `docs/export/README.md`. Rows
-//! come from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]. Write the header where the format has room for
+//! come from [`Source::edges`] and [`Source::turns`], files from [`Destination::create`]. Write the header where the format has room for
 //! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` automatically. A format whose
 //! rows are edges or turns with all their columns implements `LayerFormat` (`layer_files`) instead.
 
@@ -21,7 +21,7 @@ mod overture;
 mod pgrouting;
 mod valhalla;
 
-use super::{ExportError, Layout, Place, Source};
+use super::{Destination, ExportError, Layout, Source};
 use layer_files::LayerFiles;
 
 pub use columns::{EDGE_COLUMNS, TURN_COLUMNS, edge_cells, turn_cells};
@@ -63,11 +63,11 @@ pub trait Target: Sync {
         false
     }
 
-    /// Writes the whole output. The caller finishes `place`.
+    /// Writes the whole output. The caller finishes `destination`.
     ///
     /// # Errors
     /// The database or extract cannot be read, or the output cannot be written.
-    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError>;
+    fn write(&self, source: &Source<'_>, options: &Options, destination: &mut Destination) -> Result<(), ExportError>;
 }
 
 /// All targets in the order of the help text.

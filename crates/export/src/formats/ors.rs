@@ -13,7 +13,7 @@ use std::io::Write as _;
 
 use super::closures::{self, polygon};
 use super::{Options, Target};
-use crate::{ExportError, Layout, Place, Source};
+use crate::{Destination, ExportError, Layout, Source};
 
 /// `ors`
 pub(super) struct Ors;
@@ -42,9 +42,9 @@ impl Target for Ors {
         Layout::Folder { target: self.name(), instead: "" }
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let mut avoid = place.create("avoid_polygons.json")?;
-        let mut features = place.create("match.json")?;
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        let mut avoid = destination.create("avoid_polygons.json")?;
+        let mut features = destination.create("match.json")?;
         avoid.write_all(b"{\"type\":\"MultiPolygon\",\"coordinates\":[")?;
         features.write_all(b"{\"key\":\"netcert\",\"features\":{\"type\":\"FeatureCollection\",\"features\":[")?;
         let mut between = "\n";
@@ -62,7 +62,7 @@ impl Target for Ors {
         features.write_all(b"\n]}}\n")?;
         avoid.close()?;
         features.close()?;
-        place.write_whole("feature_map.jq", FEATURE_MAP.as_bytes())?;
+        destination.write_whole("feature_map.jq", FEATURE_MAP.as_bytes())?;
         source.reporter.note(&closed.note());
         Ok(())
     }

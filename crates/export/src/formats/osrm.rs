@@ -16,8 +16,8 @@ use rustc_hash::FxHashSet;
 use super::{Options, Target};
 use crate::osm::pbf::copy::Contents;
 use crate::scratch::Scratch;
-use crate::ways::{OnWay, Piece, WayEdges, check_ids, ids};
-use crate::{ExportError, Layout, Place, Sink, Source};
+use crate::ways::{OnWay, WayEdges, WayStretch, check_ids, ids};
+use crate::{Destination, ExportError, Layout, Sink, Source};
 
 /// The penalty of a refused turn, seconds. It is the greatest that OSRM can store (2^15 − 1 tenths).
 const PENALTY_S: f64 = 3276.7;
@@ -45,11 +45,11 @@ impl Target for Osrm {
         true
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let ends = Ends::new(place.scratch(".ends")?);
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        let ends = Ends::new(destination.scratch(".ends")?);
         let stopped = source.stopped()?;
-        let speeds = place.create("segment-speeds.csv")?;
-        let turns = place.create("turn-penalties.csv")?;
+        let speeds = destination.create("segment-speeds.csv")?;
+        let turns = destination.create("turn-penalties.csv")?;
         let mut tables = Tables { source, speeds, turns, ends, stopped, unclear: 0 };
         tables.ways()?;
         tables.turns()?;
@@ -101,7 +101,7 @@ impl Tables<'_, '_> {
                 _ if let Err(detail) = check_ids("way", way.id(), &refs) => {
                     return Err(self.source.extract_error(detail));
                 }
-                OnWay::Pieces(pieces) => self.pieces(&refs, &pieces)?,
+                OnWay::Stretches(stretches) => self.stretches(&refs, &stretches)?,
                 OnWay::Unclear(edges) => {
                     self.unclear += 1;
                     edges.iter().try_for_each(|&edge| self.ends.push(edge, [0; 3]))?;
@@ -113,10 +113,10 @@ impl Tables<'_, '_> {
         Ok(())
     }
 
-    fn pieces(&mut self, refs: &[i64], pieces: &[Piece]) -> Result<(), ExportError> {
+    fn stretches(&mut self, refs: &[i64], stretches: &[WayStretch]) -> Result<(), ExportError> {
         let mut done = 0;
-        for piece in pieces {
-            let &Piece { first, last, edges, .. } = piece;
+        for stretch in stretches {
+            let &WayStretch { first, last, edges, .. } = stretch;
             self.close(refs, done, first, [true; 2])?;
             done = last;
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));

@@ -19,7 +19,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
 use crate::rows::Rings;
 use crate::words::Named;
-use crate::{ExportEdge, ExportError, Layout, Place, Refusal, Sink, Source};
+use crate::{Destination, ExportEdge, ExportError, Layout, Refusal, Sink, Source};
 
 /// Creates the tables in one transaction and loads them from the files beside it.
 const LOAD: &str = include_str!("pgrouting_load.sql");
@@ -43,15 +43,15 @@ impl Target for PgRouting {
         Layout::Folder { target: self.name(), instead: "" }
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        place.write_whole("load.sql", LOAD.as_bytes())?;
-        let mut header = place.create("header.copy")?;
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        destination.write_whole("load.sql", LOAD.as_bytes())?;
+        let mut header = destination.create("header.copy")?;
         field(&mut header, &source.header.json().to_string())?;
         header.write_all(b"\n")?;
         header.close()?;
-        edges(source, place.create("edge.copy")?)?;
-        restrictions(source, place.create("restriction.copy")?)?;
-        steps(source, place.create("step.copy")?)
+        edges(source, destination.create("edge.copy")?)?;
+        restrictions(source, destination.create("restriction.copy")?)?;
+        steps(source, destination.create("step.copy")?)
     }
 }
 

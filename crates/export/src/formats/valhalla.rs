@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::osm_pbf::{Flavour, rewrite};
 use super::{Options, Target};
-use crate::{ExportError, Layout, Place, Source};
+use crate::{Destination, ExportError, Layout, Source};
 
 /// `valhalla`
 pub(super) struct Valhalla;
@@ -31,9 +31,10 @@ impl Target for Valhalla {
         true
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        rewrite(source, self.name(), Flavour::Valhalla, place, "extract.osm.pbf")?;
-        place.write_whole("request.json", format!("{:#}\n", request(&source.header.provenance.vehicle)).as_bytes())
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        rewrite(source, self.name(), Flavour::Valhalla, destination, "extract.osm.pbf")?;
+        destination
+            .write_whole("request.json", format!("{:#}\n", request(&source.header.provenance.vehicle)).as_bytes())
     }
 }
 

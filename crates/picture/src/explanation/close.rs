@@ -58,7 +58,7 @@ fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along
     let edge = shifted(place.corner, out, place.nominal_m);
     let colour = verdict_colour(e);
     // Beside the body, on the side without a body.
-    let away = if matches!(place.part, crate::explain::Part::FrontCorner) { 1.0 } else { -1.0 };
+    let away = if matches!(place.part, crate::explain::BodyPart::FrontCorner) { 1.0 } else { -1.0 };
     let beside = |point: Point, steps: f64| view.at(shifted(point, along, away * steps * step));
     picture.group("limiting", |p| {
         for (point, steps) in [(place.corner, 0.55), (worst, 1.6), (edge, 1.6)] {

@@ -16,7 +16,7 @@ enum Token {
 }
 
 /// One of the two numbers, with the letter of its direction, if it has one.
-struct Part {
+struct Coordinate {
     degrees: f64,
     letter: Option<char>,
 }
@@ -27,10 +27,10 @@ pub(in super::super) fn coordinates(text: &str, extent: Option<Bounds>) -> Optio
     let geo = text.get(..4).filter(|start| start.eq_ignore_ascii_case("geo:"));
     // What follows are an altitude and parameters (RFC 5870).
     let plain = if geo.is_some() { text[4..].split([';', '?']).next().unwrap_or_default() } else { text };
-    let parts = parts(plain)?;
+    let typed = numbers(plain)?;
     let [first, second] = match geo {
-        Some(_) => [parts.first()?, parts.get(1)?],
-        None => <&[Part; 2]>::try_from(parts.as_slice()).ok()?.each_ref(),
+        Some(_) => [typed.first()?, typed.get(1)?],
+        None => <&[Coordinate; 2]>::try_from(typed.as_slice()).ok()?.each_ref(),
     };
     let on_earth = |lat: f64, lon: f64| (lat.abs() <= 90.0 && lon.abs() <= 180.0).then_some(Position { lon, lat });
     match (first.letter, second.letter) {
@@ -50,21 +50,21 @@ pub(in super::super) fn coordinates(text: &str, extent: Option<Bounds>) -> Optio
 }
 
 /// The numbers of a text, degrees. `None` if there is anything else in it, or if nothing but whole numbers: these may be an address.
-fn parts(text: &str) -> Option<Vec<Part>> {
+fn numbers(text: &str) -> Option<Vec<Coordinate>> {
     let tokens = tokens(text)?;
     let exact = text.contains('.') || tokens.iter().any(|token| !matches!(token, Token::Number(_) | Token::Comma));
-    let (mut parts, mut left) = (Vec::new(), tokens.as_slice());
+    let (mut found, mut left) = (Vec::new(), tokens.as_slice());
     while !left.is_empty() && exact {
-        parts.push(part(&mut left)?);
+        found.push(coordinate(&mut left)?);
         if left.len() > 1 {
             take(&mut left, |token| (token == Token::Comma).then_some(()));
         }
     }
-    exact.then_some(parts)
+    exact.then_some(found)
 }
 
 /// Degrees with minutes and seconds, and a letter before or after them.
-fn part(left: &mut &[Token]) -> Option<Part> {
+fn coordinate(left: &mut &[Token]) -> Option<Coordinate> {
     let letter = |token| if let Token::Letter(letter) = token { Some(letter) } else { None };
     let number = |token| if let Token::Number(number) = token { Some(number) } else { None };
     let before = take(left, letter);
@@ -81,7 +81,7 @@ fn part(left: &mut &[Token]) -> Option<Part> {
         }
     }
     let letter = before.or_else(|| take(left, letter));
-    Some(Part { degrees: if matches!(letter, Some('s' | 'w')) { -degrees } else { degrees }, letter })
+    Some(Coordinate { degrees: if matches!(letter, Some('s' | 'w')) { -degrees } else { degrees }, letter })
 }
 
 fn take<T>(left: &mut &[Token], wanted: impl Fn(Token) -> Option<T>) -> Option<T> {

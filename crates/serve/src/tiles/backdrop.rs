@@ -15,7 +15,7 @@ use super::super::ask::Ask;
 use super::super::problem::Problem;
 use super::super::region::Region;
 use super::encode::{Layer, Value};
-use super::grid::{EXTENT, Place};
+use super::grid::{EXTENT, TileAddress};
 use super::{KIND, drawn, shape};
 
 /// The deepest zoom with tiles of its own. Shapes are within two metres of the map, three units of these tiles.
@@ -39,46 +39,46 @@ fn first_zoom(kind: BackdropKind) -> u8 {
 /// `/backdrop/{z}/{x}/{y}.mvt`
 pub(in super::super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&[])?;
-    let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
-    if place.z > MOST_ZOOM {
+    let tile = TileAddress::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
+    if tile.z > MOST_ZOOM {
         return Err(Problem::not_found(format!("there are tiles of the backdrop of zoom 0 to {MOST_ZOOM}")));
     }
-    Ok(Stored::new(KIND, bytes(region, place)?))
+    Ok(Stored::new(KIND, bytes(region, tile)?))
 }
 
-fn bytes(region: &Region, place: Place) -> Result<Vec<u8>, Problem> {
+fn bytes(region: &Region, tile: TileAddress) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     for (name, form) in [("area", BackdropForm::Area), ("line", BackdropForm::Line), ("place", BackdropForm::Place)] {
-        let shown = |kind: &&BackdropKind| kind.form() == form && place.z >= first_zoom(**kind);
+        let shown = |kind: &&BackdropKind| kind.form() == form && tile.z >= first_zoom(**kind);
         let kinds: Vec<BackdropKind> = BackdropKind::ALL.iter().filter(shown).copied().collect();
         if kinds.is_empty() {
             continue;
         }
-        let least_deg = if form == BackdropForm::Area { place.degrees_of(LEAST_UNITS) } else { 0.0 };
-        let things = region.read(|database| database.map_backdrop(place.bounds(), &kinds, least_deg))?;
+        let least_deg = if form == BackdropForm::Area { tile.degrees_of(LEAST_UNITS) } else { 0.0 };
+        let things = region.read(|database| database.map_backdrop(tile.bounds(), &kinds, least_deg))?;
         let mut layer = Layer::new(name, EXTENT as u16);
         for thing in &things {
-            add(&mut layer, thing, place);
+            add(&mut layer, thing, tile);
         }
         layer.finish(&mut bytes);
     }
     Ok(bytes)
 }
 
-fn add(layer: &mut Layer, thing: &MapBackdrop, place: Place) {
+fn add(layer: &mut Layer, thing: &MapBackdrop, tile: TileAddress) {
     let id = u64::try_from(thing.number).ok();
     let kind = Value::Text(thing.kind.name());
     match &thing.shape {
         BackdropShape::Areas(polygons) => {
-            let polygons: MultiPolygon = polygons.iter().filter_map(|rings| outline(rings, place)).collect();
+            let polygons: MultiPolygon = polygons.iter().filter_map(|rings| outline(rings, tile)).collect();
             layer.polygons(id, &shape::drawn_polygons(&polygons), |tags| tags.add("kind", kind));
         }
         BackdropShape::Lines(lines) => {
-            let lines: Vec<_> = lines.iter().flat_map(|line| drawn(line, place)).collect();
+            let lines: Vec<_> = lines.iter().flat_map(|line| drawn(line, tile)).collect();
             layer.feature(id, &lines, |tags| tags.add("kind", kind));
         }
         BackdropShape::Place(at) => {
-            let [x, y] = place.units(*at).map(f64::floor);
+            let [x, y] = tile.units(*at).map(f64::floor);
             // Each place is in one tile, so that its name is drawn once.
             if (0.0..EXTENT).contains(&x) && (0.0..EXTENT).contains(&y) {
                 layer.point(id, [x as i32, y as i32], |tags| {
@@ -91,9 +91,9 @@ fn add(layer: &mut Layer, thing: &MapBackdrop, place: Place) {
 }
 
 /// A polygon in tile units, without the vertices that nobody would see. `None` if nothing is left of its outline.
-fn outline(rings: &[Vec<LonLat>], place: Place) -> Option<Polygon> {
+fn outline(rings: &[Vec<LonLat>], tile: TileAddress) -> Option<Polygon> {
     let ring = |ring: &Vec<LonLat>| {
-        let units: Vec<[f64; 2]> = ring.iter().map(|&position| place.units(position)).collect();
+        let units: Vec<[f64; 2]> = ring.iter().map(|&position| tile.units(position)).collect();
         let units = shape::simplified(&units, shape::TOLERANCE);
         (units.len() >= 4).then(|| units.into_iter().map(Coord::from).collect::<LineString>())
     };

@@ -17,13 +17,13 @@ pub(super) const BUFFER: f64 = 64.0;
 
 /// A tile's address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct TileAddress {
     pub(super) z: u8,
     x: u32,
     y: u32,
 }
 
-impl Place {
+impl TileAddress {
     /// Parses the address from the parts of the path. The last part ends in `.mvt`.
     pub(super) fn read(z: &str, x: &str, y: &str) -> Result<Self, Problem> {
         let y = y.strip_suffix(".mvt").ok_or_else(|| Problem::not_found("a tile's address ends in .mvt"))?;
@@ -95,14 +95,14 @@ mod tests {
 
     #[test]
     fn the_corners_of_a_tile_are_where_they_should_be() {
-        let place = Place::read("14", "8588", "5597.mvt").unwrap();
-        let Bounds { west, south, east, north } = place.bounds();
-        let at = |lon: f64, lat: f64| place.units(LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: (lat * 1e7) as i32 });
+        let tile = TileAddress::read("14", "8588", "5597.mvt").unwrap();
+        let Bounds { west, south, east, north } = tile.bounds();
+        let at = |lon: f64, lat: f64| tile.units(LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: (lat * 1e7) as i32 });
         let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 0.1 && (a[1] - b[1]).abs() < 0.1;
         assert!(close(at(west, north), [-BUFFER, -BUFFER]));
         assert!(close(at(east, south), [EXTENT + BUFFER, EXTENT + BUFFER]));
         // The tile of Heidelberg's old bridge by the formulas of the OpenStreetMap wiki, "Slippy map tilenames".
-        assert!(west < 8.7096 && 8.7096 < east && south < 49.4144 && 49.4144 < north, "{:?}", place.bounds());
+        assert!(west < 8.7096 && 8.7096 < east && south < 49.4144 && 49.4144 < north, "{:?}", tile.bounds());
     }
 
     #[test]
@@ -119,8 +119,8 @@ mod tests {
             ("", "", ".mvt"),
             ("99999999999", "0", "0.mvt"),
         ] {
-            assert!(Place::read(z, x, y).is_err(), "{z}/{x}/{y}");
+            assert!(TileAddress::read(z, x, y).is_err(), "{z}/{x}/{y}");
         }
-        assert!(Place::read("0", "0", "0.mvt").is_ok() && Place::read("16", "65535", "65535.mvt").is_ok());
+        assert!(TileAddress::read("0", "0", "0.mvt").is_ok() && TileAddress::read("16", "65535", "65535.mvt").is_ok());
     }
 }

@@ -11,7 +11,7 @@
 //! | `classes` | the classes of road that a zoom shows |
 //! | `shape` | clipping, simplifying, rounding |
 //! | `overview` | main roads at low zooms: many edges as one line |
-//! | `raster` | joins lines on a raster; each piece shows the worst verdict that falls on it |
+//! | `raster` | joins lines on a raster; each segment of it shows the worst verdict that falls on it |
 //! | `near` | the edges near a tile, from memory or from the file |
 //! | `labels` | lines for the names of roads |
 //! | `backdrop` | what lies behind the roads |
@@ -46,7 +46,7 @@ use crate::words::{Named, verdict_words};
 use classes::{FIRST_WITH_TURNS, classes};
 use encode::{Layer, Value};
 pub(super) use grid::MOST_ZOOM;
-use grid::{EXTENT, Place};
+use grid::{EXTENT, TileAddress};
 use labels::{FIRST_WITH_LABELS, Label, labels};
 use overview::Overview;
 pub(super) use overview::severity;
@@ -65,31 +65,31 @@ pub(super) fn tile(region: &Region, overviews: &Overviews, ask: &Ask) -> Result<
     ask.only(&[])?;
     let policy = ask::policy(ask.name("policy")?)?;
     let vehicle = region.certified(ask.name("vehicle")?, policy)?.vehicle;
-    let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
-    Ok(Stored::new(KIND, bytes(region, overviews, SetKey { vehicle: &vehicle.id, policy }, place)?))
+    let tile = TileAddress::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
+    Ok(Stored::new(KIND, bytes(region, overviews, SetKey { vehicle: &vehicle.id, policy }, tile)?))
 }
 
-fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, place: Place) -> Result<Vec<u8>, Problem> {
-    if place.z <= overview::LAST_ZOOM {
+fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddress) -> Result<Vec<u8>, Problem> {
+    if tile.z <= overview::LAST_ZOOM {
         let mut bytes = Vec::new();
-        overviews.of(region, set)?.layer(place).finish(&mut bytes);
+        overviews.of(region, set)?.layer(tile).finish(&mut bytes);
         return Ok(bytes);
     }
-    let bounds = place.bounds();
+    let bounds = tile.bounds();
     let roads = region.roads_for_tiles()?;
-    let edges = near::edges(region, roads.as_deref(), set, bounds, classes(place.z))?;
+    let edges = near::edges(region, roads.as_deref(), set, bounds, classes(tile.z))?;
     let mut layer = Layer::new("edge", EXTENT as u16);
     let sides = region.sides()?;
-    let lines = edges.par_iter().with_min_len(near::LEAST_IN_PARALLEL).map(|row| drawn(&row.line, place));
+    let lines = edges.par_iter().with_min_len(near::LEAST_IN_PARALLEL).map(|row| drawn(&row.line, tile));
     for (row, lines) in edges.iter().zip(lines.collect::<Vec<_>>()) {
-        edge(&mut layer, row, &lines, sides.left(row.edge), place.z);
+        edge(&mut layer, row, &lines, sides.left(row.edge), tile.z);
     }
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
-    if place.z >= FIRST_WITH_LABELS {
+    if tile.z >= FIRST_WITH_LABELS {
         let mut layer = Layer::new("label", EXTENT as u16);
-        for Label { road, line } in labels(&edges, place.z) {
-            layer.feature(Some(u64::from(road.edge) + 1), &drawn(&line, place), |tags| {
+        for Label { road, line } in labels(&edges, tile.z) {
+            layer.feature(Some(u64::from(road.edge) + 1), &drawn(&line, tile), |tags| {
                 tags.text("name", road.name.as_deref());
                 tags.text("ref", road.reference.as_deref());
                 tags.add("highway", Value::Text(&road.highway));
@@ -97,17 +97,17 @@ fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, place: Place) 
         }
         layer.finish(&mut bytes);
     }
-    if place.z >= FIRST_WITH_TURNS {
+    if tile.z >= FIRST_WITH_TURNS {
         let turns = region.read(|database| database.map_turns(set, TurnsOf::Box(bounds)))?;
         let mut layer = Layer::new("turn", EXTENT as u16);
         for row in &turns {
-            turn(&mut layer, row, place);
+            turn(&mut layer, row, tile);
         }
         layer.finish(&mut bytes);
         let junctions = region.read(|database| database.map_junctions(bounds))?;
         let mut layer = Layer::new("junction", EXTENT as u16);
         for (node, polygons) in &junctions {
-            layer.polygons(u64::try_from(*node).ok(), &drawn_polygons(polygons, place), |_| {});
+            layer.polygons(u64::try_from(*node).ok(), &drawn_polygons(polygons, tile), |_| {});
         }
         layer.finish(&mut bytes);
     }
@@ -143,13 +143,13 @@ impl Overviews {
     }
 }
 
-fn drawn(line: &[LonLat], place: Place) -> Vec<Vec<[i32; 2]>> {
-    let line: Vec<[f64; 2]> = line.iter().map(|&position| place.units(position)).collect();
-    shape::drawn(&line, place.z == MOST_ZOOM)
+fn drawn(line: &[LonLat], tile: TileAddress) -> Vec<Vec<[i32; 2]>> {
+    let line: Vec<[f64; 2]> = line.iter().map(|&position| tile.units(position)).collect();
+    shape::drawn(&line, tile.z == MOST_ZOOM)
 }
 
-fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], place: Place) -> Vec<Vec<[i32; 2]>> {
-    let ring = |ring: &Vec<LonLat>| ring.iter().map(|&position| Coord::from(place.units(position))).collect();
+fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], tile: TileAddress) -> Vec<Vec<[i32; 2]>> {
+    let ring = |ring: &Vec<LonLat>| ring.iter().map(|&position| Coord::from(tile.units(position))).collect();
     let polygon = |rings: &Vec<Vec<LonLat>>| {
         let (outer, holes) = rings.split_first()?;
         Some(Polygon::new(ring(outer), holes.iter().map(ring).collect()))
@@ -184,8 +184,8 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
     });
 }
 
-fn turn(layer: &mut Layer, row: &MapTurn, place: Place) {
-    let lines = drawn(&row.line, place);
+fn turn(layer: &mut Layer, row: &MapTurn, tile: TileAddress) {
+    let lines = drawn(&row.line, tile);
     let (verdict, reason) = verdict_words(row.verdict);
     layer.feature(Some(u64::from(row.turn) + 1), &lines, |tags| {
         tags.only("turn_id", Value::Text(&row.turn_id.to_string()));

@@ -8,7 +8,7 @@
 
 use super::classes::{BY_RANK, classes};
 use super::encode::{Layer, Value};
-use super::grid::{self, BUFFER, Place};
+use super::grid::{self, BUFFER, TileAddress};
 use super::raster::{Raster, Said};
 use super::shape;
 use crate::osm::facts::WidthSource;
@@ -77,19 +77,19 @@ impl Overview {
     }
 
     /// The layer of a tile.
-    pub(super) fn layer(&self, place: Place) -> Layer {
-        let classes = classes(place.z).len();
-        let [west_north, east_south] = place.world(BUFFER);
+    pub(super) fn layer(&self, tile: TileAddress) -> Layer {
+        let classes = classes(tile.z).len();
+        let [west_north, east_south] = tile.world(BUFFER);
         let outside = |road: &Road| {
             let [least, greatest] = road.bounds;
             (0..2).any(|axis| greatest[axis] < west_north[axis] || least[axis] > east_south[axis])
         };
         let mut raster = Raster::default();
         for road in self.roads.iter().take_while(|road| class_of(road.said).0 < classes) {
-            if outside(road) || class_of(road.said).1 && place.z < FIRST_WITH_RAMPS {
+            if outside(road) || class_of(road.said).1 && tile.z < FIRST_WITH_RAMPS {
                 continue;
             }
-            let line: Vec<[f64; 2]> = road.line.iter().map(|&world| place.units_of(world)).collect();
+            let line: Vec<[f64; 2]> = road.line.iter().map(|&world| tile.units_of(world)).collect();
             for part in shape::clipped(&line) {
                 raster.add(part.into_iter().map(|point| point.map(|c| (c / COARSER).round() as i32)), road.said);
             }

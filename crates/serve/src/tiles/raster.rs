@@ -1,5 +1,5 @@
-//! Merges lines on a raster of half pixels. Lines that fall on the same piece of the raster become one piece with the worst
-//! of their attributes. Pieces with the same attributes are joined into long lines.
+//! Merges lines on a raster of half pixels. Lines that fall on the same segment of the raster become one segment with the worst
+//! of their attributes. Segments with the same attributes are joined into long lines.
 //!
 //! Every line that is not certified, however short, leaves a line that is not certified within a raster step and the
 //! tolerance of joining. The same input in any order gives the same lines. Certified lines shorter than a step are left
@@ -12,9 +12,9 @@ use super::shape::simplified;
 /// A point of the raster.
 pub(super) type Cell = [i32; 2];
 
-/// The greatest distance of a joined line from its pieces, steps. Half a step is a quarter of a pixel.
+/// The greatest distance of a joined line from its segments, steps. Half a step is a quarter of a pixel.
 const TOLERANCE: f64 = 0.5;
-/// The drawn length of a piece that is shorter than a step, steps. Two steps are one pixel.
+/// The drawn length of a segment that is shorter than a step, steps. Two steps are one pixel.
 const LEAST_LENGTH: i32 = 2;
 
 /// The attributes of a line. Within a class, the derived order runs from good to bad.
@@ -39,13 +39,13 @@ impl Said {
     }
 }
 
-/// A piece between two points of the raster, the lesser first. Two equal points stand for a line shorter than a step.
-type Piece = (Cell, Cell);
+/// A segment between two points of the raster, the lesser first. Two equal points stand for a line shorter than a step.
+type Segment = (Cell, Cell);
 
-/// The pieces of all added lines.
+/// The segments of all added lines.
 #[derive(Default)]
 pub(super) struct Raster {
-    pieces: Vec<(u8, Piece, Said)>,
+    segments: Vec<(u8, Segment, Said)>,
 }
 
 impl Raster {
@@ -56,58 +56,58 @@ impl Raster {
             match last {
                 Some((before, _)) if before == cell => {}
                 Some((before, _)) => {
-                    self.pieces.push((said.class, (before.min(cell), before.max(cell)), said));
+                    self.segments.push((said.class, (before.min(cell), before.max(cell)), said));
                     last = Some((cell, true));
                 }
                 None => last = Some((cell, false)),
             }
         }
         if let Some((only, false)) = last {
-            self.pieces.push((said.class, (only, only), said));
+            self.segments.push((said.class, (only, only), said));
         }
     }
 
     /// The merged lines by their attributes, from good to bad.
     pub(super) fn lines(mut self) -> BTreeMap<Said, Vec<Vec<Cell>>> {
-        self.pieces.sort_unstable();
-        let same = |a: &(u8, Piece, Said), b: &(u8, Piece, Said)| (a.0, a.1) == (b.0, b.1);
-        let worst = |group: &[(u8, Piece, Said)]| {
+        self.segments.sort_unstable();
+        let same = |a: &(u8, Segment, Said), b: &(u8, Segment, Said)| (a.0, a.1) == (b.0, b.1);
+        let worst = |group: &[(u8, Segment, Said)]| {
             let (first, others) = group.split_first()?;
             Some((first.1, others.iter().fold(first.2, |said, other| said.with(other.2))))
         };
-        let pieces: Vec<(Piece, Said)> = self.pieces.chunk_by(same).filter_map(worst).collect();
-        let barred = pieces.iter().filter(|(piece, said)| said.severity > 0 && piece.0 != piece.1);
+        let segments: Vec<(Segment, Said)> = self.segments.chunk_by(same).filter_map(worst).collect();
+        let barred = segments.iter().filter(|(segment, said)| said.severity > 0 && segment.0 != segment.1);
         let told: BTreeSet<(u8, Cell)> =
-            barred.flat_map(|(piece, said)| [(said.class, piece.0), (said.class, piece.1)]).collect();
-        let mut kinds: BTreeMap<Said, Vec<Piece>> = BTreeMap::new();
-        for (piece, said) in pieces {
-            let (a, b) = piece;
+            barred.flat_map(|(segment, said)| [(said.class, segment.0), (said.class, segment.1)]).collect();
+        let mut kinds: BTreeMap<Said, Vec<Segment>> = BTreeMap::new();
+        for (segment, said) in segments {
+            let (a, b) = segment;
             if a != b {
-                kinds.entry(said).or_default().push(piece);
+                kinds.entry(said).or_default().push(segment);
             } else if said.severity > 0 && !told.contains(&(said.class, a)) {
                 kinds.entry(said).or_default().push((a, [a[0] + LEAST_LENGTH, a[1]]));
             }
         }
-        kinds.into_iter().map(|(said, pieces)| (said, joined(&pieces))).collect()
+        kinds.into_iter().map(|(said, segments)| (said, joined(&segments))).collect()
     }
 }
 
-/// Joins pieces end to end into simplified lines. Where several pieces continue a line, the straightest one is taken.
-fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
+/// Joins segments end to end into simplified lines. Where several segments continue a line, the straightest one is taken.
+fn joined(segments: &[Segment]) -> Vec<Vec<Cell>> {
     let mut at: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
-    for (i, &(a, b)) in pieces.iter().enumerate() {
+    for (i, &(a, b)) in segments.iter().enumerate() {
         at.entry(a).or_default().push(i);
         at.entry(b).or_default().push(i);
     }
-    let mut used = vec![false; pieces.len()];
+    let mut used = vec![false; segments.len()];
     let mut lines = Vec::new();
-    for (i, &(a, b)) in pieces.iter().enumerate() {
+    for (i, &(a, b)) in segments.iter().enumerate() {
         if std::mem::replace(&mut used[i], true) {
             continue;
         }
         let mut line = vec![a, b];
         for _ in 0..2 {
-            while let Some(next) = onward(&line, pieces, &mut at, &mut used) {
+            while let Some(next) = onward(&line, segments, &mut at, &mut used) {
                 line.push(next);
             }
             line.reverse();
@@ -118,10 +118,10 @@ fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     lines
 }
 
-/// The far end of the unused piece that continues the line most nearly straight. Marks the piece as used. Used ones are taken out of `at`.
-fn onward(line: &[Cell], pieces: &[Piece], at: &mut BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
+/// The far end of the unused segment that continues the line most nearly straight. Marks the segment as used. Used ones are taken out of `at`.
+fn onward(line: &[Cell], segments: &[Segment], at: &mut BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
     let [.., before, end] = line else { return None };
-    let other = |&i: &usize| if pieces[i].0 == *end { pieces[i].1 } else { pieces[i].0 };
+    let other = |&i: &usize| if segments[i].0 == *end { segments[i].1 } else { segments[i].0 };
     let straight = |i: &usize| {
         let (u, v) = (step(*before, *end), step(*end, other(i)));
         (u[0] * v[0] + u[1] * v[1]) / (v[0].hypot(v[1]) * u[0].hypot(u[1])).max(1e-9)

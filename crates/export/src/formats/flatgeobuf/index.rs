@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::rows::Bounds;
 use crate::scratch::Scratch;
 use crate::sorter::{Sorted, Sorter};
-use crate::{ExportError, Place};
+use crate::{Destination, ExportError};
 
 /// Boxes per node, as in other writers.
 pub(super) const FANOUT: u64 = 16;
@@ -74,11 +74,11 @@ impl Index {
         located: &mut Scratch,
         features: u64,
         bounds: Bounds,
-        place: &Place,
+        destination: &Destination,
     ) -> Result<Self, ExportError> {
-        let sorted = sort(located, features, bounds, Sorter::new(place.scratch(".order")?))?;
-        let mut ordered = place.scratch(".ordered")?;
-        let mut leaves = place.scratch(".level0")?;
+        let sorted = sort(located, features, bounds, Sorter::new(destination.scratch(".order")?))?;
+        let mut ordered = destination.scratch(".ordered")?;
+        let mut leaves = destination.scratch(".level0")?;
         let mut end = 0;
         for row in sorted {
             let (_, found) = row?;
@@ -91,7 +91,7 @@ impl Index {
         for (level, pair) in sizes.windows(2).enumerate() {
             // Nodes are numbered from the root.
             let first_child: u64 = sizes[level + 1..].iter().sum();
-            let mut parents = place.scratch(&format!(".level{}", level + 1))?;
+            let mut parents = destination.scratch(&format!(".level{}", level + 1))?;
             raise(&mut levels[level], pair[0], first_child, &mut parents)?;
             levels.push(parents);
         }

@@ -43,8 +43,8 @@ impl LayerFormat for FlatGeobuf {
     const ENDING: &'static str = "fgb";
 
     fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
-        let features = table.place.scratch(".features")?;
-        let located = table.place.scratch(".located")?;
+        let features = table.destination.scratch(".features")?;
+        let located = table.destination.scratch(".located")?;
         Ok(Self { sink, features, located, count: 0, end: 0, bounds: None, builder: FlatBufferBuilder::new() })
     }
 
@@ -64,7 +64,7 @@ impl LayerFormat for FlatGeobuf {
         self.sink.write_all(&MAGIC)?;
         self.sink.write_all(&header(table, self.count, self.bounds))?;
         if let Some(bounds) = self.bounds {
-            let mut index = Index::build(&mut self.located, self.count, bounds, table.place)?;
+            let mut index = Index::build(&mut self.located, self.count, bounds, table.destination)?;
             index.write(&mut self.sink)?;
             let mut bytes = Vec::new();
             let reporter = table.source.reporter;

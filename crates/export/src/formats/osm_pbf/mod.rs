@@ -24,7 +24,7 @@ mod tags;
 pub(super) use rewrite::rewrite;
 
 use super::{Options, Target};
-use crate::{ExportError, Layout, Place, Source};
+use crate::{Destination, ExportError, Layout, Source};
 
 /// The first id of new objects. It is beyond the ids of OpenStreetMap (nodes reached 1.3e10 in 2026) and within the 40 bits that
 /// Valhalla stores.
@@ -60,7 +60,7 @@ impl Target for OsmPbf {
         true
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        rewrite(source, self.name(), Flavour::Hgv, place, "extract.osm.pbf")
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        rewrite(source, self.name(), Flavour::Hgv, destination, "extract.osm.pbf")
     }
 }

@@ -16,7 +16,7 @@ use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
 use crate::scratch::Scratch;
 use crate::ways::ids;
-use crate::{ExportError, Place, Sink, Source};
+use crate::{Destination, ExportError, Sink, Source};
 
 const ALL: &str = "restriction";
 const HGV: &str = "restriction:hgv";
@@ -53,7 +53,11 @@ pub(super) struct Refusals<'s, 'r> {
 }
 
 impl<'s, 'r> Refusals<'s, 'r> {
-    pub(super) fn create(source: &'s Source<'r>, flavour: Flavour, place: &Place) -> Result<Self, ExportError> {
+    pub(super) fn create(
+        source: &'s Source<'r>,
+        flavour: Flavour,
+        destination: &Destination,
+    ) -> Result<Self, ExportError> {
         let sequences = source.sequences()?;
         let middle = |edges: &Vec<u32>| edges.get(1..edges.len() - 1).unwrap_or_default().to_vec();
         let between = sequences.iter().flat_map(middle).map(|edge| (edge, Vec::new())).collect();
@@ -64,9 +68,9 @@ impl<'s, 'r> Refusals<'s, 'r> {
             sequences,
             ends: FxHashMap::default(),
             between,
-            dead_ends: place.scratch(".ends")?,
+            dead_ends: destination.scratch(".ends")?,
             said: FxHashSet::default(),
-            relations: Spool::new(place.scratch(".relations")?),
+            relations: Spool::new(destination.scratch(".relations")?),
             next_id: FIRST_NEW_ID,
         })
     }

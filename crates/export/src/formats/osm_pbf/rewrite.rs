@@ -8,13 +8,13 @@ use super::block::{Spool, Texts, write_blob, write_block};
 use super::limits::{NodeLimits, with_limits};
 use super::refusals::{End, Refusals};
 use super::relations::{PartEnds, Splits, Turns, name_parts, set_aside, set_members, turns_of};
-use super::split::{Part, parts};
+use super::split::{WayPart, parts};
 use super::tags::{Said, Tag, with_permits};
 use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
-use crate::ways::{OnWay, Piece, WayEdges, check_ids, ids};
-use crate::{ExportError, Place, Sink, Source};
+use crate::ways::{OnWay, WayEdges, WayStretch, check_ids, ids};
+use crate::{Destination, ExportError, Sink, Source};
 
 /// An engine may take a way with one of these keys for a road.
 const KEYS: [&[u8]; 3] = [b"highway", b"route", b"bridge"];
@@ -24,20 +24,20 @@ pub(in crate::formats) fn rewrite(
     source: &Source<'_>,
     target: &'static str,
     flavour: Flavour,
-    place: &mut Place,
+    destination: &mut Destination,
     name: &str,
 ) -> Result<(), ExportError> {
     let mut rewriter = Rewriter {
         source,
         flavour,
-        refusals: Refusals::create(source, flavour, place)?,
+        refusals: Refusals::create(source, flavour, destination)?,
         limits: NodeLimits::default(),
         splits: Splits::default(),
-        new_ways: Spool::new(place.scratch(".ways")?),
+        new_ways: Spool::new(destination.scratch(".ways")?),
         next_id: FIRST_NEW_ID,
         unclear: 0,
         stage: Stage::Nodes,
-        out: place.create(name)?,
+        out: destination.create(name)?,
     };
     rewriter.blobs(target)?;
     rewriter.reach(Stage::Relations)?;
@@ -185,28 +185,28 @@ impl Rewriter<'_, '_> {
         }
         let refs = ids(&way.refs);
         check_ids("way", way.id(), &refs).map_err(|detail| self.source.extract_error(detail))?;
-        let whole = || vec![Part { first: 0, last: refs.len().saturating_sub(1), said: Said::default() }];
-        let (pieces, parts) = match edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))? {
+        let whole = || vec![WayPart { first: 0, last: refs.len().saturating_sub(1), said: Said::default() }];
+        let (stretches, parts) = match edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))? {
             OnWay::Nothing if !way.keys.iter().any(|&key| KEYS.contains(&texts.text(key))) => return Ok(false),
             OnWay::Nothing => (Vec::new(), whole()),
             OnWay::Unclear(_) => {
                 self.unclear += 1;
                 (Vec::new(), whole())
             }
-            OnWay::Pieces(pieces) => {
+            OnWay::Stretches(stretches) => {
                 let limited = |nodes: &[i64]| self.limits.any_on(nodes);
-                let parts = parts(&pieces, &refs, &self.source.permitted, self.refusals.cuts(), &limited);
-                (pieces, parts)
+                let parts = parts(&stretches, &refs, &self.source.permitted, self.refusals.cuts(), &limited);
+                (stretches, parts)
             }
         };
         let part_ids = self.number(way.id(), &parts, &refs);
-        self.lay(&pieces, &parts, &part_ids, &refs)?;
+        self.lay(&stretches, &parts, &part_ids, &refs)?;
         self.write_parts(way, &parts, &part_ids, &refs, texts)?;
         Ok(true)
     }
 
     /// The ids of the parts. The first part keeps the way's id.
-    fn number(&mut self, way_id: i64, parts: &[Part], refs: &[i64]) -> Vec<i64> {
+    fn number(&mut self, way_id: i64, parts: &[WayPart], refs: &[i64]) -> Vec<i64> {
         let mut ids = vec![way_id];
         for _ in parts.iter().skip(1) {
             ids.push(self.next_id);
@@ -214,7 +214,7 @@ impl Rewriter<'_, '_> {
         }
         if parts.len() > 1 {
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
-            let ends = |part: &Part| [node(part.first), node(part.last)];
+            let ends = |part: &WayPart| [node(part.first), node(part.last)];
             let parts = ids.iter().zip(parts).map(|(&id, part)| PartEnds { id, ends: ends(part) }).collect();
             self.splits.insert(way_id, parts);
         }
@@ -222,20 +222,26 @@ impl Rewriter<'_, '_> {
     }
 
     /// Notes the ends of the edges that relations will name, and the ends at which turning back is refused.
-    fn lay(&mut self, pieces: &[Piece], parts: &[Part], ids: &[i64], refs: &[i64]) -> Result<(), ExportError> {
-        for piece in pieces {
-            let way = |within: &dyn Fn(&Part) -> bool| {
+    fn lay(
+        &mut self,
+        stretches: &[WayStretch],
+        parts: &[WayPart],
+        ids: &[i64],
+        refs: &[i64],
+    ) -> Result<(), ExportError> {
+        for stretch in stretches {
+            let way = |within: &dyn Fn(&WayPart) -> bool| {
                 parts.iter().zip(ids).find(|(part, _)| within(part)).map_or(0, |(_, &id)| id)
             };
             let end = |way, place: usize| End { way, node: refs.get(place).copied().unwrap_or_default() };
-            let first = end(way(&|part| (part.first..part.last).contains(&piece.first)), piece.first);
-            let last = end(way(&|part| part.first < piece.last && piece.last <= part.last), piece.last);
-            for (edge, ends) in piece.edges.into_iter().zip([[first, last], [last, first]]) {
+            let first = end(way(&|part| (part.first..part.last).contains(&stretch.first)), stretch.first);
+            let last = end(way(&|part| part.first < stretch.last && stretch.last <= part.last), stretch.last);
+            for (edge, ends) in stretch.edges.into_iter().zip([[first, last], [last, first]]) {
                 if let Some(edge) = edge {
-                    self.refusals.lies(edge, ends, refs.get(piece.first..=piece.last).unwrap_or_default());
+                    self.refusals.lies(edge, ends, refs.get(stretch.first..=stretch.last).unwrap_or_default());
                 }
             }
-            if piece.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge))) {
+            if stretch.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge))) {
                 self.refusals.dead_end(first)?;
                 self.refusals.dead_end(last)?;
             }
@@ -246,14 +252,14 @@ impl Rewriter<'_, '_> {
     fn write_parts(
         &mut self,
         way: &mut Way,
-        parts: &[Part],
+        parts: &[WayPart],
         ids: &[i64],
         refs: &[i64],
         texts: &mut Texts,
     ) -> Result<(), ExportError> {
         let text = |number: &u32| texts.text(*number).to_vec();
         let tags: Vec<Tag> = way.keys.iter().zip(&way.vals).map(|(key, value)| (text(key), text(value))).collect();
-        let tags_of = |part: &Part| {
+        let tags_of = |part: &WayPart| {
             let of_nodes = self.limits.on(refs.get(part.first..=part.last).unwrap_or_default());
             with_limits(with_permits(&tags, part.said, self.flavour), &of_nodes)
         };
@@ -284,7 +290,7 @@ fn stage_of(group: &PrimitiveGroup) -> Stage {
 }
 
 /// The references of a part in the format's form: differences from one to the next.
-fn steps(refs: &[i64], part: &Part) -> Vec<i64> {
+fn steps(refs: &[i64], part: &WayPart) -> Vec<i64> {
     let mut last = 0;
     let step = |&node: &i64| node.wrapping_sub(std::mem::replace(&mut last, node));
     refs.get(part.first..=part.last).unwrap_or_default().iter().map(step).collect()

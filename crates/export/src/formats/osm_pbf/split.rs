@@ -2,11 +2,11 @@
 
 use super::tags::Said;
 use crate::permit::{Bits, Permitted};
-use crate::ways::Piece;
+use crate::ways::WayStretch;
 
 /// A part of a way as it is written: a range of the way's references.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Part {
+pub(super) struct WayPart {
     pub(super) first: usize,
     pub(super) last: usize,
     pub(super) said: Said,
@@ -29,30 +29,30 @@ impl Cuts {
         self.at.iter().any(|bits| bits.get(edge))
     }
 
-    /// Whether a way must end at a piece's first node, and at its last. If both directions are permitted, turning back is refused at
+    /// Whether a way must end at a stretch's first node, and at its last. If both directions are permitted, turning back is refused at
     /// both ends, so the way must end at both.
-    fn of(&self, piece: &Piece, permitted: [bool; 2]) -> [bool; 2] {
+    fn of(&self, stretch: &WayStretch, permitted: [bool; 2]) -> [bool; 2] {
         let cut = |edge: Option<u32>, end: usize| {
             edge.is_some_and(|edge| self.at.get(end).is_some_and(|bits| bits.get(edge)))
         };
-        let [along, against] = piece.edges;
+        let [along, against] = stretch.edges;
         [0, 1].map(|end| permitted == [true; 2] || cut(along, end) || cut(against, 1 - end))
     }
 }
 
-/// The parts of a way with these pieces and references. Neighbouring parts share a node.
-/// `limited` says whether some of these nodes have a limit: it is that of the pieces beside, so the way is split at their ends.
+/// The parts of a way with these stretches and references. Neighbouring parts share a node.
+/// `limited` says whether some of these nodes have a limit: it is that of the stretches beside, so the way is split at their ends.
 pub(super) fn parts(
-    pieces: &[Piece],
+    stretches: &[WayStretch],
     refs: &[i64],
     permitted: &Permitted,
     cuts: &Cuts,
     limited: &dyn Fn(&[i64]) -> bool,
-) -> Vec<Part> {
-    let mut out: Vec<Part> = Vec::new();
+) -> Vec<WayPart> {
+    let mut out: Vec<WayPart> = Vec::new();
     // Whether the last part must not be extended.
     let mut ended = false;
-    let mut add = |part: Part, cut: [bool; 2]| {
+    let mut add = |part: WayPart, cut: [bool; 2]| {
         if part.first == part.last {
             return;
         }
@@ -68,30 +68,30 @@ pub(super) fn parts(
         ended = cut[1];
     };
     let mut done = 0;
-    for piece in pieces {
-        // Between pieces the extract lacks nodes, so nothing is permitted there.
-        add(Part { first: done, last: piece.first, said: Said::default() }, [false; 2]);
-        let yes = piece.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge)));
-        let said = Said { permitted: yes, rsc_m: piece.rsc_m };
-        let on_piece = refs.get(piece.first..=piece.last).unwrap_or_default();
-        let cut = if limited(on_piece) { [true; 2] } else { cuts.of(piece, yes) };
-        match middle_of_loop(piece, refs).filter(|_| cut != [false; 2]) {
-            // The piece returns to its beginning. It is split in the middle, because a relation could not tell its ends apart.
+    for stretch in stretches {
+        // Between stretches the extract lacks nodes, so nothing is permitted there.
+        add(WayPart { first: done, last: stretch.first, said: Said::default() }, [false; 2]);
+        let yes = stretch.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge)));
+        let said = Said { permitted: yes, rsc_m: stretch.rsc_m };
+        let on_stretch = refs.get(stretch.first..=stretch.last).unwrap_or_default();
+        let cut = if limited(on_stretch) { [true; 2] } else { cuts.of(stretch, yes) };
+        match middle_of_loop(stretch, refs).filter(|_| cut != [false; 2]) {
+            // The stretch returns to its beginning. It is split in the middle, because a relation could not tell its ends apart.
             Some(middle) => {
-                add(Part { first: piece.first, last: middle, said }, [cut[0], true]);
-                add(Part { first: middle, last: piece.last, said }, [true, cut[1]]);
+                add(WayPart { first: stretch.first, last: middle, said }, [cut[0], true]);
+                add(WayPart { first: middle, last: stretch.last, said }, [true, cut[1]]);
             }
-            None => add(Part { first: piece.first, last: piece.last, said }, cut),
+            None => add(WayPart { first: stretch.first, last: stretch.last, said }, cut),
         }
-        done = piece.last;
+        done = stretch.last;
     }
-    add(Part { first: done, last: refs.len().saturating_sub(1), said: Said::default() }, [false; 2]);
+    add(WayPart { first: done, last: refs.len().saturating_sub(1), said: Said::default() }, [false; 2]);
     out
 }
 
-fn middle_of_loop(piece: &Piece, refs: &[i64]) -> Option<usize> {
-    let closed = refs.get(piece.first) == refs.get(piece.last);
-    (closed && piece.last - piece.first >= 2).then_some(piece.first.midpoint(piece.last))
+fn middle_of_loop(stretch: &WayStretch, refs: &[i64]) -> Option<usize> {
+    let closed = refs.get(stretch.first) == refs.get(stretch.last);
+    (closed && stretch.last - stretch.first >= 2).then_some(stretch.first.midpoint(stretch.last))
 }
 
 #[cfg(test)]
@@ -101,15 +101,15 @@ mod tests {
     /// A node with a limit.
     const LIMITED: i64 = 77;
 
-    fn piece(first: usize, last: usize, edges: [Option<u32>; 2]) -> Piece {
-        Piece { first, last, edges, rsc_m: [Some(0.5); 2] }
+    fn stretch(first: usize, last: usize, edges: [Option<u32>; 2]) -> WayStretch {
+        WayStretch { first, last, edges, rsc_m: [Some(0.5); 2] }
     }
 
-    fn spans(pieces: &[Piece], refs: &[i64], permitted: &[u32], cuts: &Cuts) -> Vec<(usize, usize, [bool; 2])> {
+    fn spans(stretches: &[WayStretch], refs: &[i64], permitted: &[u32], cuts: &Cuts) -> Vec<(usize, usize, [bool; 2])> {
         let mut bits = Bits::unset(10);
         permitted.iter().for_each(|&edge| bits.set(edge));
         let permitted = Permitted { edges: bits, ..Permitted::default() };
-        parts(pieces, refs, &permitted, cuts, &|nodes| nodes.contains(&LIMITED))
+        parts(stretches, refs, &permitted, cuts, &|nodes| nodes.contains(&LIMITED))
             .iter()
             .map(|p| (p.first, p.last, p.said.permitted))
             .collect()
@@ -117,43 +117,45 @@ mod tests {
 
     #[test]
     fn a_way_is_split_where_permits_change_and_nowhere_else() {
-        let pieces = [piece(0, 2, [Some(0), None]), piece(2, 3, [Some(1), None]), piece(3, 5, [Some(2), None])];
+        let stretches =
+            [stretch(0, 2, [Some(0), None]), stretch(2, 3, [Some(1), None]), stretch(3, 5, [Some(2), None])];
         let refs = [1, 2, 3, 4, 5, 6];
         let none = Cuts::none(10);
-        assert_eq!(spans(&pieces, &refs, &[0, 1, 2], &none), [(0, 5, [true, false])]);
-        assert_eq!(spans(&pieces, &refs, &[], &none), [(0, 5, [false; 2])]);
-        assert_eq!(spans(&pieces, &refs, &[0, 1], &none), [(0, 3, [true, false]), (3, 5, [false; 2])]);
+        assert_eq!(spans(&stretches, &refs, &[0, 1, 2], &none), [(0, 5, [true, false])]);
+        assert_eq!(spans(&stretches, &refs, &[], &none), [(0, 5, [false; 2])]);
+        assert_eq!(spans(&stretches, &refs, &[0, 1], &none), [(0, 3, [true, false]), (3, 5, [false; 2])]);
     }
 
     #[test]
     fn a_way_ends_at_both_ends_of_an_edge_with_a_limit_of_a_node() {
-        let pieces = [piece(0, 1, [Some(0), None]), piece(1, 3, [Some(1), None]), piece(3, 4, [Some(2), None])];
+        let stretches =
+            [stretch(0, 1, [Some(0), None]), stretch(1, 3, [Some(1), None]), stretch(3, 4, [Some(2), None])];
         let along = [true, false];
-        let found = spans(&pieces, &[1, 2, LIMITED, 3, 4], &[0, 1, 2], &Cuts::none(10));
+        let found = spans(&stretches, &[1, 2, LIMITED, 3, 4], &[0, 1, 2], &Cuts::none(10));
         assert_eq!(found, [(0, 1, along), (1, 3, along), (3, 4, along)]);
         // On a junction it is that of the edges on both sides.
-        let found = spans(&pieces, &[1, LIMITED, 3, 4, 5], &[0, 1, 2], &Cuts::none(10));
+        let found = spans(&stretches, &[1, LIMITED, 3, 4, 5], &[0, 1, 2], &Cuts::none(10));
         assert_eq!(found, [(0, 1, along), (1, 3, along), (3, 4, along)]);
     }
 
     #[test]
     fn a_way_ends_where_a_relation_needs_it_and_where_nodes_are_missing() {
-        let pieces = [piece(1, 2, [Some(0), None]), piece(2, 3, [Some(1), None])];
+        let stretches = [stretch(1, 2, [Some(0), None]), stretch(2, 3, [Some(1), None])];
         let mut cuts = Cuts::none(10);
         cuts.at[1].set(0);
         assert_eq!(
-            spans(&pieces, &[9, 1, 2, 3, 8], &[0, 1], &cuts),
+            spans(&stretches, &[9, 1, 2, 3, 8], &[0, 1], &cuts),
             [(0, 1, [false; 2]), (1, 2, [true, false]), (2, 3, [true, false]), (3, 4, [false; 2])]
         );
         // Both directions are permitted, so turning back is refused at both ends.
-        let both = [piece(0, 1, [Some(0), Some(1)]), piece(1, 2, [Some(2), Some(3)])];
+        let both = [stretch(0, 1, [Some(0), Some(1)]), stretch(1, 2, [Some(2), Some(3)])];
         assert_eq!(spans(&both, &[1, 2, 3], &[0, 1, 2, 3], &Cuts::none(10)).len(), 2);
     }
 
     #[test]
     fn a_loop_is_split_in_the_middle() {
-        let pieces = [piece(0, 3, [Some(0), Some(1)])];
-        let found = spans(&pieces, &[1, 2, 3, 1], &[0, 1], &Cuts::none(10));
+        let stretches = [stretch(0, 3, [Some(0), Some(1)])];
+        let found = spans(&stretches, &[1, 2, 3, 1], &[0, 1], &Cuts::none(10));
         assert_eq!(found, [(0, 1, [true; 2]), (1, 3, [true; 2])]);
     }
 }

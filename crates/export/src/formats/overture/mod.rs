@@ -9,8 +9,8 @@
 //! What the schema cannot express is refused: an edge that is not permitted by itself stays denied even to a permitted passage
 //! over it.
 
+mod locations;
 mod segment;
-mod spots;
 mod values;
 
 use std::collections::BTreeMap;
@@ -23,9 +23,9 @@ use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
-use crate::{ExportError, Layout, Place, Sink, Source};
-use segment::{Piece, Segment};
-use spots::{Spot, Spots};
+use crate::{Destination, ExportError, Layout, Sink, Source};
+use locations::{EdgeLocation, EdgeLocations};
+use segment::{Segment, SegmentStretch};
 
 /// `overture`
 pub(super) struct Overture;
@@ -43,14 +43,14 @@ impl Target for Overture {
         Layout::Folder { target: self.name(), instead: "" }
     }
 
-    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let mut spots = Spots::create(source, place.scratch(".spots")?)?;
-        let mut transitions = Transitions::collect(source, place)?;
-        let mut connectors = Sorter::new(place.scratch(".connectors")?);
-        let mut sink = begin(source, place.create("segment.geojson")?)?;
+    fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
+        let mut locations = EdgeLocations::create(source, destination.scratch(".spots")?)?;
+        let mut transitions = Transitions::collect(source, destination)?;
+        let mut connectors = Sorter::new(destination.scratch(".connectors")?);
+        let mut sink = begin(source, destination.create("segment.geojson")?)?;
         let mut writer = Writer {
             scope: segment::Scope { length_m: length_m(source)? },
-            spots: &mut spots,
+            locations: &mut locations,
             transitions: &mut transitions,
             connectors: &mut connectors,
             source,
@@ -59,7 +59,7 @@ impl Target for Overture {
         };
         writer.segments()?;
         end(sink)?;
-        write_connectors(source, connectors.sorted()?, place)
+        write_connectors(source, connectors.sorted()?, destination)
     }
 }
 
@@ -81,8 +81,12 @@ fn end(mut sink: Sink) -> Result<(), ExportError> {
     sink.close()
 }
 
-fn write_connectors(source: &Source<'_>, nodes: Sorted<i64, LonLat>, place: &mut Place) -> Result<(), ExportError> {
-    let mut sink = begin(source, place.create("connector.geojson")?)?;
+fn write_connectors(
+    source: &Source<'_>,
+    nodes: Sorted<i64, LonLat>,
+    destination: &mut Destination,
+) -> Result<(), ExportError> {
+    let mut sink = begin(source, destination.create("connector.geojson")?)?;
     let mut last = None;
     for row in nodes {
         let (node, at) = row?;
@@ -112,9 +116,9 @@ struct Transitions {
 }
 
 impl Transitions {
-    fn collect(source: &Source<'_>, place: &Place) -> Result<Self, ExportError> {
+    fn collect(source: &Source<'_>, destination: &Destination) -> Result<Self, ExportError> {
         let mut database = source.database()?;
-        let mut turns = Sorter::new(place.scratch(".turns")?);
+        let mut turns = Sorter::new(destination.scratch(".turns")?);
         for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
             let step = step?;
             if source.refuses_turn(&step) {
@@ -147,7 +151,7 @@ impl Transitions {
 
 struct Writer<'w, 'r> {
     scope: segment::Scope,
-    spots: &'w mut Spots,
+    locations: &'w mut EdgeLocations,
     transitions: &'w mut Transitions,
     connectors: &'w mut Sorter<i64, LonLat>,
     source: &'w Source<'r>,
@@ -162,22 +166,22 @@ impl Writer<'_, '_> {
         let mut open: Option<Segment> = None;
         for edge in source.edges(&mut database)? {
             let edge = edge?;
-            let spot = self.spots.get(edge.row.edge)?;
-            let same = open.as_ref().is_some_and(|open| (open.way_id, open.chain) == (spot.way_id, spot.chain));
+            let location = self.locations.get(edge.row.edge)?;
+            let same = open.as_ref().is_some_and(|open| (open.way_id, open.chain) == (location.way_id, location.chain));
             if !same && let Some(done) = open.take() {
                 self.write(&done)?;
             }
-            let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &spot));
-            if segment.pieces.last().is_none_or(|piece| piece.shape_start != spot.shape_start) {
-                segment.pieces.push(Piece::new(&edge.row, &spot));
+            let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &location));
+            if segment.stretches.last().is_none_or(|stretch| stretch.shape_start != location.shape_start) {
+                segment.stretches.push(SegmentStretch::new(&edge.row, &location));
             }
-            if let Some(piece) = segment.pieces.last_mut() {
-                piece.values.take(&edge.row, spot.heading, source.ask.policy == Policy::Carriageway);
+            if let Some(stretch) = segment.stretches.last_mut() {
+                stretch.values.take(&edge.row, location.heading, source.ask.policy == Policy::Carriageway);
             }
             if edge.refusal.is_none() {
                 let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;
-                if let Some(piece) = segment.pieces.last_mut() {
-                    piece.permitted[spot.heading as usize] = Some(forbidden);
+                if let Some(stretch) = segment.stretches.last_mut() {
+                    stretch.permitted[location.heading as usize] = Some(forbidden);
                 }
             }
         }
@@ -191,7 +195,7 @@ impl Writer<'_, '_> {
             let mut via = end;
             let mut steps = Vec::with_capacity(sequence.len());
             for to in sequence {
-                let Spot { way_id, chain, heading, end, .. } = self.spots.get(to)?;
+                let EdgeLocation { way_id, chain, heading, end, .. } = self.locations.get(to)?;
                 steps.push((via, segment::id(way_id, chain), heading));
                 via = end;
             }

@@ -6,7 +6,7 @@
 use geo::{Distance as _, Geodesic, Point};
 use serde_json::{Map, Value, json};
 
-use super::spots::Spot;
+use super::locations::EdgeLocation;
 use super::values::{self, Values};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
@@ -24,7 +24,7 @@ pub(super) struct Forbidden {
 }
 
 /// A stretch between two junctions.
-pub(super) struct Piece {
+pub(super) struct SegmentStretch {
     pub(super) shape_start: u32,
     /// The end nodes, in way order.
     nodes: [i64; 2],
@@ -36,16 +36,16 @@ pub(super) struct Piece {
     pub(super) permitted: [Option<Vec<Forbidden>>; 2],
 }
 
-impl Piece {
+impl SegmentStretch {
     /// A stretch made from the first of its edges. Nothing is permitted yet.
-    pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
+    pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
         let mut line = row.line.clone();
         let mut nodes = [row.from_node, row.to_node];
-        if spot.heading == Direction::Backward {
+        if location.heading == Direction::Backward {
             line.reverse();
             nodes.reverse();
         }
-        Self { shape_start: spot.shape_start, nodes, line, values: Values::default(), permitted: [None, None] }
+        Self { shape_start: location.shape_start, nodes, line, values: Values::default(), permitted: [None, None] }
     }
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Segment {
     highway: String,
     name: Option<String>,
     reference: Option<String>,
-    pub(super) pieces: Vec<Piece>,
+    pub(super) stretches: Vec<SegmentStretch>,
 }
 
 /// The id of a segment: `w123`, and `w123.1` for the part after a gap.
@@ -71,23 +71,23 @@ pub(super) fn connector_id(node: i64) -> String {
 
 impl Segment {
     /// A segment without stretches.
-    pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
-        let Spot { way_id, chain, .. } = *spot;
+    pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
+        let EdgeLocation { way_id, chain, .. } = *location;
         Self {
             way_id,
             chain,
             highway: row.highway.clone(),
             name: row.name.clone(),
             reference: row.reference.clone(),
-            pieces: Vec::new(),
+            stretches: Vec::new(),
         }
     }
 
     /// The nodes at which the segment meets others.
     pub(super) fn nodes(&self) -> impl Iterator<Item = (i64, LonLat)> + '_ {
-        self.pieces.iter().flat_map(|piece| {
-            let ends = [piece.line.first(), piece.line.last()];
-            piece.nodes.into_iter().zip(ends).filter_map(|(node, at)| Some((node, *at?)))
+        self.stretches.iter().flat_map(|stretch| {
+            let ends = [stretch.line.first(), stretch.line.last()];
+            stretch.nodes.into_iter().zip(ends).filter_map(|(node, at)| Some((node, *at?)))
         })
     }
 
@@ -122,8 +122,8 @@ impl Segment {
             for (member, rules) in [
                 ("access_restrictions", self.denials(&at, scope)),
                 ("prohibited_transitions", self.transitions(&at, scope)),
-                ("speed_limits", values::speed_limits(&self.pieces, &at)),
-                ("width_rules", values::widths(&self.pieces, &at)),
+                ("speed_limits", values::speed_limits(&self.stretches, &at)),
+                ("width_rules", values::widths(&self.stretches, &at)),
             ] {
                 if !rules.is_empty() {
                     members.insert(member.to_owned(), Value::Array(rules));
@@ -141,16 +141,16 @@ impl Segment {
 
     /// All positions. A position at which two stretches meet comes once.
     fn line(&self) -> impl Iterator<Item = LonLat> + '_ {
-        let begin = self.pieces.first().and_then(|piece| piece.line.first()).copied();
-        begin.into_iter().chain(self.pieces.iter().flat_map(|piece| piece.line.iter().skip(1).copied()))
+        let begin = self.stretches.first().and_then(|stretch| stretch.line.first()).copied();
+        begin.into_iter().chain(self.stretches.iter().flat_map(|stretch| stretch.line.iter().skip(1).copied()))
     }
 
     /// The linear references of the stretches' ends, from 0 to 1. There is one more than there are stretches.
     fn at(&self) -> Vec<f64> {
         let mut along_m = vec![0.0];
         let mut so_far_m = 0.0;
-        for piece in &self.pieces {
-            so_far_m += length_m(&piece.line);
+        for stretch in &self.stretches {
+            so_far_m += length_m(&stretch.line);
             along_m.push(so_far_m);
         }
         // Rounded so that the text does not depend on the last bits. The step is 0.1 mm on a way of 100 km.
@@ -163,8 +163,8 @@ impl Segment {
     }
 
     fn connectors(&self, at: &[f64]) -> Vec<Value> {
-        let begin = self.pieces.first().map(|piece| piece.nodes[0]);
-        let ends = self.pieces.iter().map(|piece| piece.nodes[1]);
+        let begin = self.stretches.first().map(|stretch| stretch.nodes[0]);
+        let ends = self.stretches.iter().map(|stretch| stretch.nodes[1]);
         let connector = |(node, at): (i64, &f64)| json!({"connector_id": connector_id(node), "at": at});
         begin.into_iter().chain(ends).zip(at).map(connector).collect()
     }
@@ -173,12 +173,12 @@ impl Segment {
     fn denials(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
         let denied = |heading: usize| -> Vec<[usize; 2]> {
             let mut ranges: Vec<[usize; 2]> = Vec::new();
-            let refused = |piece: &Piece| {
+            let refused = |stretch: &SegmentStretch| {
                 // A direction that does not exist has a rule of its own, unless neither has an edge.
-                let gone = !piece.values.exists[heading] && piece.values.exists[1 - heading];
-                piece.permitted[heading].is_none() && !gone
+                let gone = !stretch.values.exists[heading] && stretch.values.exists[1 - heading];
+                stretch.permitted[heading].is_none() && !gone
             };
-            for (i, _) in self.pieces.iter().enumerate().filter(|(_, piece)| refused(piece)) {
+            for (i, _) in self.stretches.iter().enumerate().filter(|(_, stretch)| refused(stretch)) {
                 match ranges.last_mut() {
                     Some(range) if range[1] == i => range[1] = i + 1,
                     _ => ranges.push([i, i + 1]),
@@ -193,7 +193,7 @@ impl Segment {
             rule.insert("when".to_owned(), scope.when(heading));
             Value::Object(rule)
         };
-        let mut rules = values::oneways(&self.pieces, at);
+        let mut rules = values::oneways(&self.stretches, at);
         let [forward, backward] = [denied(0), denied(1)];
         if forward == backward {
             rules.extend(forward.into_iter().map(|range| rule(range, None)));
@@ -207,10 +207,10 @@ impl Segment {
     /// The prohibited transitions of each stretch, including turning back on the road.
     fn transitions(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
         let mut rules = Vec::new();
-        for (i, piece) in self.pieces.iter().enumerate() {
+        for (i, stretch) in self.stretches.iter().enumerate() {
             for heading in [Direction::Forward, Direction::Backward] {
                 let (ahead, back) = (heading as usize, 1 - heading as usize);
-                let Some(forbidden) = &piece.permitted[ahead] else { continue };
+                let Some(forbidden) = &stretch.permitted[ahead] else { continue };
                 let mut rule = |steps: &[(i64, String, Direction)]| {
                     let Some(last) = steps.last() else { return };
                     let entry = |(node, segment, _): &(i64, String, Direction)| json!({"connector_id": connector_id(*node), "segment_id": segment});
@@ -222,9 +222,9 @@ impl Segment {
                     rules.push(Value::Object(rule));
                 };
                 forbidden.iter().for_each(|forbidden| rule(&forbidden.steps));
-                if piece.permitted[back].is_some() {
+                if stretch.permitted[back].is_some() {
                     let opposite = if heading == Direction::Forward { Direction::Backward } else { Direction::Forward };
-                    rule(&[(piece.nodes[back], id(self.way_id, self.chain), opposite)]);
+                    rule(&[(stretch.nodes[back], id(self.way_id, self.chain), opposite)]);
                 }
             }
         }
@@ -267,22 +267,22 @@ fn length_m(line: &[LonLat]) -> f64 {
 mod tests {
     use super::*;
 
-    fn piece(from: i32, to: i32, permitted: [bool; 2]) -> Piece {
+    fn stretch(from: i32, to: i32, permitted: [bool; 2]) -> SegmentStretch {
         let line = [from, to].map(|lon_e7| LonLat { lon_e7: lon_e7 * 1000, lat_e7: 0 }).to_vec();
         let permitted = permitted.map(|yes| yes.then(Vec::new));
         let values = Values { exists: [true; 2], ..Values::default() };
-        Piece { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, values, permitted }
+        SegmentStretch { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, values, permitted }
     }
 
-    fn segment(pieces: Vec<Piece>) -> Value {
+    fn segment(stretches: Vec<SegmentStretch>) -> Value {
         let segment =
-            Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, reference: None, pieces };
+            Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, reference: None, stretches };
         segment.feature(&Scope { length_m: 16.5 })["properties"].clone()
     }
 
     #[test]
     fn refused_stretches_next_to_each_other_are_one_rule() {
-        let made = segment(vec![piece(0, 1, [true, false]), piece(1, 2, [false; 2]), piece(2, 4, [false, true])]);
+        let made = segment(vec![stretch(0, 1, [true, false]), stretch(1, 2, [false; 2]), stretch(2, 4, [false, true])]);
         let rules: Vec<(Value, Value)> = made["access_restrictions"]
             .as_array()
             .map(|rules| rules.iter().map(|r| (r["between"].clone(), r["when"]["heading"].clone())).collect())
@@ -295,10 +295,10 @@ mod tests {
 
     #[test]
     fn what_is_refused_as_a_whole_has_one_rule_and_nobody_turns_back() {
-        let made = segment(vec![piece(0, 1, [false; 2]), piece(1, 2, [false; 2])]);
+        let made = segment(vec![stretch(0, 1, [false; 2]), stretch(1, 2, [false; 2])]);
         let rules = made["access_restrictions"].as_array().map_or(0, Vec::len);
         assert_eq!((rules, made["access_restrictions"][0].get("between")), (1, None));
-        let made = segment(vec![piece(0, 1, [true; 2]), piece(1, 2, [false, true])]);
+        let made = segment(vec![stretch(0, 1, [true; 2]), stretch(1, 2, [false, true])]);
         let turns = made["prohibited_transitions"].as_array().cloned().unwrap_or_default();
         assert_eq!(turns.len(), 2);
         assert_eq!(turns[0]["sequence"], json!([{"connector_id": "n1", "segment_id": "w7"}]));

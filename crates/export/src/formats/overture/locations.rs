@@ -1,4 +1,4 @@
-//! The place of every edge: its way, the unbroken chain of the way, and its direction. The places are in a file by edge, so that
+//! The location of every edge: its way, the unbroken chain of the way, and its direction. The locations are in a file by edge, so that
 //! rules of one segment can name other segments without the network in memory.
 
 use std::io::Write as _;
@@ -8,9 +8,9 @@ use crate::rows::EdgeStep;
 use crate::scratch::Scratch;
 use crate::{ExportError, Source};
 
-/// The place of one edge.
+/// Where one edge is: on which way, and which way it goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Spot {
+pub(super) struct EdgeLocation {
     pub(super) way_id: i64,
     /// Index of the chain. A way with gaps in the extract has several chains.
     pub(super) chain: u32,
@@ -21,14 +21,14 @@ pub(super) struct Spot {
     pub(super) end: i64,
 }
 
-const SPOT_BYTES: usize = 32;
+const LOCATION_BYTES: usize = 32;
 
-/// The places of all edges.
-pub(super) struct Spots {
+/// The locations of all edges.
+pub(super) struct EdgeLocations {
     file: Scratch,
 }
 
-impl Spots {
+impl EdgeLocations {
     /// Reads every edge once. `file` must be empty.
     pub(super) fn create(source: &Source<'_>, mut file: Scratch) -> Result<Self, ExportError> {
         let mut database = source.database()?;
@@ -41,28 +41,28 @@ impl Spots {
         Ok(Self { file })
     }
 
-    /// The place of an edge of the network.
-    pub(super) fn get(&mut self, edge: u32) -> Result<Spot, ExportError> {
-        let mut bytes = [0; SPOT_BYTES];
-        self.file.read_at(u64::from(edge) * SPOT_BYTES as u64, &mut bytes)?;
-        Ok(Spot::of(&bytes))
+    /// The location of an edge of the network.
+    pub(super) fn get(&mut self, edge: u32) -> Result<EdgeLocation, ExportError> {
+        let mut bytes = [0; LOCATION_BYTES];
+        self.file.read_at(u64::from(edge) * LOCATION_BYTES as u64, &mut bytes)?;
+        Ok(EdgeLocation::of(&bytes))
     }
 }
 
-impl Spot {
-    fn to_bytes(self) -> [u8; SPOT_BYTES] {
+impl EdgeLocation {
+    fn to_bytes(self) -> [u8; LOCATION_BYTES] {
         let numbers = [
             self.way_id.cast_unsigned(),
             u64::from(self.chain) << 32 | u64::from(self.shape_start),
             self.heading as u64,
             self.end.cast_unsigned(),
         ];
-        let mut bytes = [0; SPOT_BYTES];
+        let mut bytes = [0; LOCATION_BYTES];
         bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers).for_each(|(word, number)| *word = number.to_le_bytes());
         bytes
     }
 
-    fn of(bytes: &[u8; SPOT_BYTES]) -> Self {
+    fn of(bytes: &[u8; LOCATION_BYTES]) -> Self {
         let mut numbers = [0; 4];
         numbers.iter_mut().zip(bytes.as_chunks::<8>().0).for_each(|(number, word)| *number = u64::from_le_bytes(*word));
         let [way_id, chain_and_start, heading, end] = numbers;
@@ -86,7 +86,7 @@ struct Chain {
 }
 
 impl Chain {
-    fn next(&mut self, facts: &EdgeStep) -> Spot {
+    fn next(&mut self, facts: &EdgeStep) -> EdgeLocation {
         let &EdgeStep { way_id, shape_start, positions, direction: heading, to_node: end, .. } = facts;
         if self.way_id != Some(way_id) {
             *self = Self { way_id: Some(way_id), ..Self::default() };
@@ -95,7 +95,7 @@ impl Chain {
         }
         self.shape_start = shape_start;
         self.shape_last = shape_start + positions.saturating_sub(1);
-        Spot { way_id, chain: self.number, shape_start, heading, end }
+        EdgeLocation { way_id, chain: self.number, shape_start, heading, end }
     }
 }
 
@@ -121,10 +121,10 @@ mod tests {
             facts(9, 8, 2, Forward),
         ];
         let mut chain = Chain::default();
-        let spots: Vec<Spot> = edges.iter().map(|edge| chain.next(edge)).collect();
-        assert_eq!(spots.iter().map(|spot| spot.chain).collect::<Vec<_>>(), [0, 0, 0, 1, 0]);
-        for spot in spots {
-            assert_eq!(Spot::of(&spot.to_bytes()), spot);
+        let locations: Vec<EdgeLocation> = edges.iter().map(|edge| chain.next(edge)).collect();
+        assert_eq!(locations.iter().map(|location| location.chain).collect::<Vec<_>>(), [0, 0, 0, 1, 0]);
+        for location in locations {
+            assert_eq!(EdgeLocation::of(&location.to_bytes()), location);
         }
     }
 }
