@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import errors
+from .table import pandas_type
 
 if TYPE_CHECKING:
     import pyarrow
@@ -90,9 +91,10 @@ def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int) -> None:
         column, row = cells[begin]
         place = folder / f"cell={zoom}-{column}-{row}" / f"vehicle_id={known.vehicle_id}"
         place.mkdir(parents=True, exist_ok=True)
-        # Arrow's own types, so that a column without a number is of the same type in every file.
+        # Types that do not depend on the values, so that a column without a number is of the same type in every file.
         rows_here = table.take(pyarrow.array(order[begin:end]))
-        some = geopandas.GeoDataFrame.from_arrow(rows_here, to_pandas_kwargs={"types_mapper": pandas.ArrowDtype})
+        mapper = {"types_mapper": lambda kind: pandas_type(kind) or pandas.ArrowDtype(kind)}
+        some = geopandas.GeoDataFrame.from_arrow(rows_here, to_pandas_kwargs=mapper)
         some.to_parquet(
             place / f"{known.corridor}.parquet",
             index=False,

@@ -23,8 +23,10 @@ def table(rows: Table, **options: Any) -> folium.Map:
     frame = rows.to_geopandas()
     told = [name for name in _TOLD if name in frame.columns]
     drawn = folium.Map(**options)
+    # JavaScript has doubles only, and they round ids.
+    ids = {name: str for name in told if name.endswith("_id")}
     layer = folium.GeoJson(
-        frame[[*told, "geometry"]].to_json(),
+        frame[[*told, "geometry"]].astype(ids).to_json(),
         style_function=lambda feature: {"color": VERDICTS[feature["properties"]["verdict"]], "weight": 4},
         tooltip=folium.GeoJsonTooltip(told) if len(frame) else None,
     )

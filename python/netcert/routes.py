@@ -194,10 +194,21 @@ class Routes:
         return self._answer.to_geojson()
 
     def to_geopandas(self) -> geopandas.GeoDataFrame:
-        """The features of `to_geojson` as a GeoDataFrame in longitude and latitude."""
-        import geopandas
+        """The features of `to_geojson` as a GeoDataFrame in longitude and latitude.
 
-        return geopandas.GeoDataFrame.from_features(self.to_geojson()["features"], crs="OGC:CRS84")
+        Columns of whole numbers are `Int64`, which has room for gaps and for ids of 63 bits.
+        """
+        import geopandas
+        import pandas
+
+        features = self.to_geojson()["features"]
+        frame = geopandas.GeoDataFrame.from_features(features, crs="OGC:CRS84")
+        for name in frame.columns.drop("geometry"):
+            values = [feature["properties"].get(name) for feature in features]
+            # A column with gaps has become one of doubles. A truth value is no number.
+            if {type(value) for value in values} - {type(None)} == {int}:
+                frame[name] = pandas.array(values, dtype="Int64")
+        return frame
 
     def explore(self, **options: Any) -> Any:
         """Routes, obstacles and conditions on a map that one can move (folium). Options are those of `folium.Map`.

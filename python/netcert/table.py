@@ -13,11 +13,22 @@ if TYPE_CHECKING:
     from ._netcert import RowBatches
 
 
+def pandas_type(kind: pyarrow.DataType) -> pandas.Int64Dtype | None:
+    """The type in pandas of an Arrow column: `Int64` for whole numbers, whether or not a row lacks one. None leaves the choice to pandas.
+
+    Of its own accord pandas makes doubles of a column with gaps, and they round ids of 63 bits.
+    """
+    import pandas
+    import pyarrow
+
+    return pandas.Int64Dtype() if pyarrow.types.is_integer(kind) else None
+
+
 class Table:
     """Rows in memory as Arrow record batches.
 
     Every package that reads Arrow's C stream interface takes a table as it is and copies nothing: `pyarrow.table(t)`,
-    `polars.from_arrow(t)`, `duckdb.from_arrow(t)`. `docs/columns.md` describes the columns. Where rows have a place, the column
+    `polars.DataFrame(t)`, `duckdb.from_arrow(t)`. `docs/columns.md` describes the columns. Where rows have a place, the column
     `geometry` holds lines of longitudes and latitudes (GeoArrow, OGC:CRS84).
     """
 
@@ -47,11 +58,11 @@ class Table:
         return pyarrow.table(self)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The rows as a DataFrame without `geometry`. `to_geopandas` has the lines, too."""
-        table = self.to_pyarrow()
-        if "geometry" in table.column_names:
-            table = table.drop_columns(["geometry"])
-        return table.to_pandas()
+        """The rows as a DataFrame without `geometry`. `to_geopandas` has the lines, too.
+
+        Columns of whole numbers are `Int64`, which has room for gaps and for ids of 63 bits.
+        """
+        return _without_lines(self.to_pyarrow())
 
     def to_polars(self) -> polars.DataFrame:
         """The rows as a polars DataFrame."""
@@ -63,12 +74,12 @@ class Table:
         return frame
 
     def to_geopandas(self) -> geopandas.GeoDataFrame:
-        """The rows as a GeoDataFrame in OGC:CRS84 (longitude, latitude)."""
+        """The rows as a GeoDataFrame in OGC:CRS84 (longitude, latitude). Columns have the types of `to_pandas`."""
         import geopandas
 
         if "geometry" not in self.column_names:
             raise ValueError("these rows have no place; use to_pandas()")
-        return geopandas.GeoDataFrame.from_arrow(self.to_pyarrow())
+        return geopandas.GeoDataFrame.from_arrow(self.to_pyarrow(), to_pandas_kwargs={"types_mapper": pandas_type})
 
     def explore(self, **options: Any) -> Any:
         """The rows on a map that one can move (folium), coloured by verdict. Options are those of `folium.Map`.
@@ -83,8 +94,12 @@ class Table:
         return f"<Table: {len(self)} rows, {len(self.column_names)} columns>"
 
     def _repr_html_(self) -> str:
-        head = self.to_pyarrow().slice(0, 10)
-        if "geometry" in head.column_names:
-            head = head.drop_columns(["geometry"])
-        shown = head.to_pandas().to_html(index=False, border=0)
+        shown = _without_lines(self.to_pyarrow().slice(0, 10)).to_html(index=False, border=0)
         return f"{shown}<p>{len(self)} rows × {len(self.column_names)} columns</p>"
+
+
+def _without_lines(table: pyarrow.Table) -> pandas.DataFrame:
+    """The rows as a DataFrame without `geometry`."""
+    if "geometry" in table.column_names:
+        table = table.drop_columns(["geometry"])
+    return table.to_pandas(types_mapper=pandas_type)
