@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use netcert::diff::{Change, Row, Sums, edges, notes, turns};
+use netcert::diff::{Change, RoadChange, Row, Sums, edges, notes, turns};
 use netcert::osm::facts::Policy;
 use netcert::rows::SetKey;
 use netcert::store::{CertifiedSet, Database, QueryOptions};
@@ -206,15 +206,15 @@ impl Sink {
         }
         writeln!(self.out, "{}, corridor {}", set.vehicle, set.policy.name())?;
         let mut table = Table::new(&["change", ">km", ">edges", "highway", "road"]);
-        for (change, road, changes) in roads {
+        for RoadChange { change, road, on_road } in roads {
             let change = match change {
                 Change::Became(_) => change.name().to_owned(),
                 Change::Appeared(standing) | Change::Went(standing) => {
                     format!("{} ({})", change.name(), standing.name())
                 }
             };
-            let length = format!("{:.2}", changes.sum.length_m / 1000.0);
-            table.row([change, length, grouped(changes.sum.edges), road.highway.clone(), printable(&road.name)]);
+            let length = format!("{:.2}", on_road.sum.length_m / 1000.0);
+            table.row([change, length, grouped(on_road.sum.edges), road.highway.clone(), printable(&road.name)]);
         }
         table.write(&mut self.out, "  ")?;
         Ok(())

@@ -92,7 +92,7 @@ impl Export {
         let unfinished = Unfinished::default();
         let on_disk = unfinished.clone();
         when_stopped(|| on_disk.remove());
-        match export::export(&source, target, &Options { layer: self.layer }, (out, unfinished)) {
+        match export::export(&source, target, &Options { layer: self.layer }, out, unfinished) {
             // Kept as an I/O error: `main` then recognises a closed pipe, which is no failure.
             Err(ExportError::Write(error)) => return Err(error.into()),
             done => done?,

@@ -46,7 +46,7 @@ pub fn explain_edge(
     let mut hints = Hints::default();
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
         hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet, stop), geometry, model);
-        hints.other_strips = other_strips(network, edge, (model, geometry.result.rsc_m), settings, stop);
+        hints.other_strips = other_strips(network, edge, model, geometry.result.rsc_m, settings, stop);
         if !geometry.result.closes() {
             let safe =
                 |model: &Model| case.result(&case.made.corridor, model, &settings.stet, stop).is_some_and(|r| r.safe());
@@ -155,7 +155,7 @@ pub(super) fn geometry(
     stop: &Stop,
 ) -> Result<Option<Geometry>, Stopped> {
     let certified = certify_planned(corridor, model, spans, options, stop)?;
-    Ok(certified.and_then(|certified| seen_from(corridor, spans, which, model, certified)))
+    Ok(certified.and_then(|(certificate, results)| seen_from(corridor, spans, which, model, certificate, results)))
 }
 
 fn seen_from(
@@ -163,7 +163,8 @@ fn seen_from(
     spans: &[std::ops::Range<usize>],
     which: usize,
     model: &Model,
-    (mut certificate, results): (Certificate, Vec<SpanResult>),
+    mut certificate: Certificate,
+    results: Vec<SpanResult>,
 ) -> Option<Geometry> {
     let (span, result) = (spans.get(which)?.clone(), results.into_iter().nth(which)?);
     certificate.result = result.clone();
@@ -186,7 +187,8 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
 fn other_strips(
     network: &Network,
     edge: u32,
-    (model, rsc_m): (&Model, Option<f64>),
+    model: &Model,
+    rsc_m: Option<f64>,
     settings: &Settings,
     stop: &Stop,
 ) -> Vec<hints::OtherStrip> {

@@ -98,7 +98,7 @@ pub fn explain_turn(
     }
     if let (Ok(made), Verdict::Unsafe(_)) = (&made, verdict) {
         hints.kerb = match made.kerb_radius_m {
-            Some(radius_m) => Some(kerb(network, facts, model, settings, (radius_m, stop))?),
+            Some(radius_m) => Some(kerb(network, facts, model, settings, radius_m, stop)?),
             None => None,
         };
     }
@@ -142,7 +142,8 @@ fn kerb(
     facts: &TurnFacts,
     model: &Model,
     settings: &Settings,
-    (radius_m, stop): (f64, &Stop),
+    radius_m: f64,
+    stop: &Stop,
 ) -> Result<KerbHint, Stopped> {
     let safe_with = |steps: u32| -> Result<bool, Stopped> {
         stop.check()?;

@@ -123,7 +123,7 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
     if let (Some(bounds_m), Some(margin_rad)) = (g.place.bounds_m, g.result.hinge_margin_rad)
         && rsc(g) > FAR_M
     {
-        reasons.push(gap(e, (&g.place, bounds_m), strip));
+        reasons.push(gap(e, &g.place, bounds_m, strip));
         reasons.extend(g.taper().map(|taper| tapers(taper, strip)));
         reasons.push(tracking(&e.vehicle, g));
         reasons.push(hinge_reason(&e.vehicle, g, margin_rad));
@@ -143,7 +143,7 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
     reasons
 }
 
-fn gap(e: &Explanation, (place, bounds_m): (&LimitingPlace, f64), strip: &str) -> String {
+fn gap(e: &Explanation, place: &LimitingPlace, bounds_m: f64, strip: &str) -> String {
     let source = e.road.as_ref().and_then(|road| {
         let said = source_words(road.width_source?);
         let tags = road.width_tags.join(", ");

@@ -65,7 +65,8 @@ pub fn export(
     source: &Source<'_>,
     target: &dyn Target,
     options: &formats::Options,
-    (out, unfinished): (Out, Unfinished),
+    out: Out,
+    unfinished: Unfinished,
 ) -> Result<(), ExportError> {
     formats::check_reference(target, source.ask.relative_to.as_deref())?;
     let mut destination = Destination::begin(out, target.layout(options), unfinished)?;

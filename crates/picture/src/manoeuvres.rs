@@ -1,5 +1,7 @@
 //! The turns of a vehicle: the road that it sweeps in 90°, 180° and a full circle, with the numbers at their places.
 
+use std::ops::RangeInclusive;
+
 use super::furniture::{arrow, dimension};
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
@@ -70,7 +72,7 @@ fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &TurnMeasu
     points.push([0.0, turn.radius_m]);
     let view = View::fit(&Bounds::of(&points).grown(1.0), frame);
     picture.clipped(frame, "turn", |p| {
-        smear(p, &view, vehicle, &drive, (-2.0, 1e9));
+        smear(p, &view, vehicle, &drive, -2.0..=1e9);
         path(p, &view, &drive);
         let arc = turn.radius_m * turn.angle_rad;
         for share in [0.0, 0.5, 1.0] {
@@ -116,12 +118,12 @@ fn pose_at(drive: &Drive, at_m: f64) -> &[crate::stet::motion::Pose] {
     drive.poses.get(k).map_or(&[], Vec::as_slice)
 }
 
-/// Draws the area that the bodies sweep while the guide is between two places.
-fn smear(picture: &mut Picture, view: &View, vehicle: &Vehicle, drive: &Drive, (from, to): (f64, f64)) {
+/// Draws the area that the bodies sweep while the guide is at these places, metres along the path.
+fn smear(picture: &mut Picture, view: &View, vehicle: &Vehicle, drive: &Drive, guide_m: RangeInclusive<f64>) {
     picture.group("swept", |p| {
-        let mut next = from;
+        let mut next = *guide_m.start();
         for (poses, &at) in drive.poses.iter().zip(&drive.at_m) {
-            if at >= next && at <= to {
+            if at >= next && at <= *guide_m.end() {
                 next = at + SMEAR_M;
                 for (unit, pose) in vehicle.units.iter().zip(poses) {
                     p.polygon(&view.all(&pose.outline(unit)), Style::area(palette::ROAD).outlined(palette::ROAD, 0.8));
@@ -165,7 +167,7 @@ fn circle(picture: &mut Picture, vehicle: &Vehicle, report: &Report, frame: Fram
     let view = View::fit(&bounds, frame);
     let arc = turn.radius_m * turn.angle_rad;
     picture.clipped(frame, "circle", |p| {
-        smear(p, &view, vehicle, &drive, (0.0, arc));
+        smear(p, &view, vehicle, &drive, 0.0..=arc);
         p.circle(view.at(middle), view.length(turn.radius_m), Style::line(palette::BLUE, 2.0));
         p.circle(view.at(middle), view.length(5.30), Style::line(palette::INK, 1.2).dashed(6.0, 4.0));
         let inner = Style::line(palette::VERMILLION, 1.6);

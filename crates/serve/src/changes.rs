@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::memo::Recent;
 use super::problem::Problem;
 use super::region::Certified;
-use crate::diff::{self, Change, Changed, Row, Sums};
+use crate::diff::{self, Changed, RoadChange, Row, Sums};
 use crate::network::length_m;
 use crate::rows::{Bounds, DrivingSides, EdgeRow, SetKey, TurnRow};
 use crate::stop::Stop;
@@ -147,7 +147,7 @@ impl Gathered<'_> {
     fn turn(&mut self, changed: &Changed<TurnRow>) -> Result<(), StoreError> {
         self.sums.add_turn(changed);
         let length_m = changed.row().map_or(0.0, |row| length_m(row.line.iter().copied()));
-        self.keep(Row::of_turn(self.set, changed), length_m, false, None);
+        self.keep(Row::of_turn(self.set, changed), length_m, changed.two_way, None);
         Ok(())
     }
 
@@ -173,7 +173,7 @@ impl Gathered<'_> {
         let Longest { kept, all } = self.longest;
         let sum = |(name, sum): (&&str, &diff::Sum)| json!({"change": name, "edges": sum.edges, "km": km(sum.length_m), "turns": sum.turns});
         let mut roads = self.sums.roads();
-        roads.sort_by(|a, b| b.2.sum.length_m.total_cmp(&a.2.sum.length_m));
+        roads.sort_by(|a, b| b.on_road.sum.length_m.total_cmp(&a.on_road.sum.length_m));
         Changes {
             sums: self.sums.by_name().iter().map(sum).collect(),
             roads: roads.into_iter().take(MOST_ROADS).map(road).collect(),
@@ -185,16 +185,16 @@ impl Gathered<'_> {
     }
 }
 
-fn road((change, road, changes): (Change, &diff::Road, &diff::OnRoad)) -> Value {
+fn road(RoadChange { change, road, on_road }: RoadChange<'_>) -> Value {
     json!({
         "change": change.name(),
         "standing": change.standing().name(),
         "highway": road.highway,
         "road": road.name,
-        "edges": changes.sum.edges,
-        "km": km(changes.sum.length_m),
-        "edge_id": changes.longest.map(|(edge_id, _)| edge_id.to_string()),
-        "bbox": changes.bounds.map(|b| [b.west, b.south, b.east, b.north].map(|side| (side * 1e7).round() / 1e7)),
+        "edges": on_road.sum.edges,
+        "km": km(on_road.sum.length_m),
+        "edge_id": on_road.longest.map(|(edge_id, _)| edge_id.to_string()),
+        "bbox": on_road.bounds.map(|b| [b.west, b.south, b.east, b.north].map(|side| (side * 1e7).round() / 1e7)),
     })
 }
 

@@ -12,7 +12,7 @@ use crate::explain::Ride;
 use crate::route::Route;
 use crate::speed_profile::SpeedProfile;
 use crate::stet::motion::Pose;
-use crate::stet::{Model, known_m, tubes};
+use crate::stet::{Model, Side, known_m, tubes};
 
 /// The greatest number of stretches in the leeway strip, about the columns of a wide screen.
 const MOST_STRETCHES: usize = 1500;
@@ -24,8 +24,17 @@ const LONGEST_M: f64 = 15.0;
 /// 4 mm off between two moments.
 const MOST_TURN_RAD: f64 = 0.035;
 
-/// The members that a page needs beside the route's numbers: `geometry`, `leeway`, and `drive` if `drive` is true.
-pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value, FrameError> {
+/// What a page shows of a route.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// Its line, and the leeway along it.
+    Line,
+    /// The drive along it, too.
+    Drive,
+}
+
+/// The members that a page needs beside the route's numbers: `geometry` and `leeway`, and `drive` with [`Detail::Drive`].
+pub(super) fn members(model: &Model, route: &Route, detail: Detail) -> Result<Value, FrameError> {
     let certificate = &route.certificate;
     let corridor = &route.path.corridor;
     let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
@@ -36,7 +45,7 @@ pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value
         "geometry": {"type": "LineString", "coordinates": line},
         "leeway": leeway(route),
     });
-    if drive {
+    if detail == Detail::Drive {
         members["drive"] = moments(model, route, &ride, &stations)?;
     }
     Ok(members)
@@ -124,24 +133,27 @@ fn moments(model: &Model, route: &Route, ride: &Ride, stations: &[usize]) -> Res
             "tube_m": lateral,
         }));
     }
-    let side = |left: bool| -> Vec<[f64; 2]> {
-        let at = |k: &usize| Some(beside(corridor, *k, left)).filter(|_| *k < corridor.len());
+    let edge = |side: Side| -> Vec<[f64; 2]> {
+        let at = |k: &usize| Some(beside(corridor, *k, side)).filter(|_| *k < corridor.len());
         stations.iter().filter_map(at).collect()
     };
     Ok(json!({
         "t": pick(&times, 100.0),
         "s_m": stations.iter().map(|&k| rounded(k as f64 * corridor.spacing_m, 100.0)).collect::<Vec<_>>(),
         "units": units,
-        "left_edge": degrees(frame, &side(true))?,
-        "right_edge": degrees(frame, &side(false))?,
+        "left_edge": degrees(frame, &edge(Side::Left))?,
+        "right_edge": degrees(frame, &edge(Side::Right))?,
         "pace": "80 km/h at most, 2 m/s² across in bends; no certificate depends on it",
     }))
 }
 
 /// The point on the corridor's left or right edge at a station, metres in the corridor's frame.
-fn beside(c: &Corridor, k: usize, left: bool) -> [f64; 2] {
+fn beside(c: &Corridor, k: usize, side: Side) -> [f64; 2] {
     let along = |column: &[f64]| column.get(k).copied().unwrap_or_default();
-    let by = if left { along(&c.left_m) } else { -along(&c.right_m) };
+    let by = match side {
+        Side::Left => along(&c.left_m),
+        Side::Right => -along(&c.right_m),
+    };
     let heading = along(&c.heading);
     [along(&c.x) - by * heading.sin(), along(&c.y) + by * heading.cos()]
 }

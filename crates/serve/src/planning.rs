@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, mpsc};
 
-use super::drive;
+use super::drive::{self, Detail};
 use super::memo::Recent;
 use super::problem::Problem;
 use super::region::{Certified, Region};
@@ -139,12 +139,14 @@ impl PlannerThread {
         })?;
         let (network, model) = (&self.roads.network, &self.driver.model);
         let mut members = route::json(network, model, &answer);
-        let certified =
-            answer.routes.iter().enumerate().map(|(i, found)| (format!("/routes/{i}"), found, i < ride.drives));
-        let conditional = answer.conditional.iter().map(|known| ("/conditional".to_owned(), &known.route, false));
-        for (place, found, drive) in certified.chain(conditional) {
+        let of_route = |i: usize| if i < ride.drives { Detail::Drive } else { Detail::Line };
+        let certified = answer.routes.iter().enumerate();
+        let certified = certified.map(|(i, found)| (format!("/routes/{i}"), found, of_route(i)));
+        let conditional =
+            answer.conditional.iter().map(|known| ("/conditional".to_owned(), &known.route, Detail::Line));
+        for (place, found, detail) in certified.chain(conditional) {
             ride.stop.check()?;
-            let mut more = drive::members(model, found, drive).map_err(|error| Problem::fault(error.to_string()))?;
+            let mut more = drive::members(model, found, detail).map_err(|error| Problem::fault(error.to_string()))?;
             if place == "/conditional" {
                 more["leeway"]["verdict"] = json!(route::CONDITIONAL);
             }

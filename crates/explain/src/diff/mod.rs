@@ -12,7 +12,7 @@ use std::iter::Peekable;
 
 use rustc_hash::FxHashMap;
 
-pub use roads::{OnRoad, Road, Sum, Sums};
+pub use roads::{OnRoad, Road, RoadChange, Sum, Sums};
 pub use row::Row;
 
 use crate::osm::facts::Direction;
@@ -44,10 +44,11 @@ named!(Standing {
 });
 
 impl Standing {
-    fn new(certificate: &CertificateRow, need_is_known: bool) -> Self {
+    /// `need_m` is what would be enough, if that is known, metres.
+    fn new(certificate: &CertificateRow, need_m: Option<f64>) -> Self {
         match certificate.verdict {
             Verdict::Safe => Self::Safe,
-            Verdict::Unsafe(UnsafeReason::Width) if need_is_known => Self::Conditional,
+            Verdict::Unsafe(UnsafeReason::Width) if need_m.is_some() => Self::Conditional,
             Verdict::Unsafe(_) => Self::Unsafe,
             Verdict::Forbidden(_) => Self::Forbidden,
             Verdict::Unknown(_) => Self::Unknown,
@@ -57,13 +58,13 @@ impl Standing {
     /// The standing of an edge.
     #[must_use]
     pub fn of_edge(row: &EdgeRow) -> Self {
-        Self::new(&row.certificate, row.need_width_m.is_some())
+        Self::new(&row.certificate, row.need_width_m)
     }
 
     /// The standing of a turn.
     #[must_use]
     pub fn of_turn(row: &TurnRow) -> Self {
-        Self::new(&row.certificate, row.need_kerb_radius_m.or(row.need_flare_m).is_some())
+        Self::new(&row.certificate, row.need_kerb_radius_m.or(row.need_flare_m))
     }
 }
 

@@ -65,6 +65,17 @@ impl OnRoad {
     }
 }
 
+/// The edges of one road with one change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadChange<'s> {
+    /// What changed.
+    pub change: Change,
+    /// The road.
+    pub road: &'s Road,
+    /// The edges.
+    pub on_road: &'s OnRoad,
+}
+
 /// Sums of changes, by change and by road.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sums {
@@ -93,10 +104,13 @@ impl Sums {
 
     /// The roads of each change, the longest first.
     #[must_use]
-    pub fn roads(&self) -> Vec<(Change, &Road, &OnRoad)> {
-        let mut roads: Vec<_> = self.roads.iter().map(|((change, road), changes)| (*change, road, changes)).collect();
+    pub fn roads(&self) -> Vec<RoadChange<'_>> {
+        let roads = self.roads.iter();
+        let mut roads: Vec<RoadChange<'_>> =
+            roads.map(|((change, road), on_road)| RoadChange { change: *change, road, on_road }).collect();
         roads.sort_by(|a, b| {
-            a.0.cmp(&b.0).then(b.2.sum.length_m.total_cmp(&a.2.sum.length_m)).then_with(|| a.1.cmp(b.1))
+            let longer = b.on_road.sum.length_m.total_cmp(&a.on_road.sum.length_m);
+            a.change.cmp(&b.change).then(longer).then_with(|| a.road.cmp(b.road))
         });
         roads
     }

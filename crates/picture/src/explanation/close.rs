@@ -31,13 +31,13 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
         .map(|(o, a)| shifted(shifted(middle, out, o * reach), along, a * reach));
     let view = View::turned(&box_of, -along[1].atan2(along[0]), frame);
     let around = 12.0 / g.corridor.spacing_m;
-    let window = (place.station - around, place.station + around);
-    scene::road(picture, g, &view, window);
+    let stations = place.station - around..place.station + around;
+    scene::road(picture, g, &view, &stations);
     bodies::vehicle(picture, &view, &e.vehicle, &place.poses, &|unit| body_colour(e, g, unit));
-    scene::lines(picture, g, &view, window);
-    scene::kerbs(picture, g, &view, window);
+    scene::lines(picture, g, &view, &stations);
+    scene::kerbs(picture, g, &view, &stations);
 
-    gap(picture, e, g, &view, (along, 0.36 * reach * ratio));
+    gap(picture, e, g, &view, along, 0.36 * reach * ratio);
     let small = TextStyle::size(12.5).coloured(palette::GREY).haloed();
     let side = if matches!(place.side, crate::stet::Side::Left) { "left" } else { "right" };
     picture.text(
@@ -50,7 +50,7 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
 
 /// Draws corner, largest extent of the errors, and edge. Dimension lines show the distances between them, `step` metres
 /// apart along the road.
-fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along, step): (Point, f64)) {
+fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, along: Point, step: f64) {
     let place = &g.place;
     let Some((rsc, bounds_m)) = g.result.rsc_m.zip(place.bounds_m) else { return };
     let out = place.outward;
@@ -103,7 +103,7 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let (zero, sign) = if h.unit == 0 { (ahead, 1.0) } else { (ahead.map(|c| -c), -1.0) };
     let view = View::turned(&box_of, -ahead[1].atan2(ahead[0]), frame);
     let around = 25.0 / g.corridor.spacing_m;
-    scene::road(picture, g, &view, (h.station - around, h.station + around));
+    scene::road(picture, g, &view, &(h.station - around..h.station + around));
     bodies::vehicle(picture, &view, &e.vehicle, &h.poses, &|unit| body_colour(e, g, unit));
     let radius = if h.unit == 0 { 0.95 } else { 0.62 } * reach;
     let towards = |angle: f64, metres: f64| view.at(shifted(pivot, turned(zero, sign * angle), metres));

@@ -1,5 +1,7 @@
 //! The road and the whole vehicle where it is tightest, driving to the right.
 
+use std::ops::Range;
+
 use super::super::furniture::{arrow, scale_bar};
 use super::super::palette;
 use super::super::style::{Anchor, Style, TextStyle};
@@ -57,12 +59,13 @@ pub(super) fn height(e: &Explanation, g: &Geometry, width: f64) -> f64 {
 pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let (head, poses) = moment(e, g);
     let view = View::turned(&content(e, g), -chord(poses), frame.inset(14.0)).at_most(60.0);
+    let stations = window(e, g, head);
     picture.clipped(frame, "scene", |p| {
         p.rect(frame, 0.0, Style::area(palette::PAPER));
-        road(p, g, &view, window(e, g, head));
+        road(p, g, &view, &stations);
         before_and_after(p, e, g, &view, head);
-        ribbon(p, e, g, &view, window(e, g, head));
-        lines(p, g, &view, window(e, g, head));
+        ribbon(p, e, g, &view, &stations);
+        lines(p, g, &view, &stations);
         bodies::vehicle(p, &view, &e.vehicle, poses, &|unit| body_colour(e, g, unit));
         mark(p, e, g, &view, frame);
         compass(p, &view, frame);
@@ -76,17 +79,18 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
 }
 
 /// Range of stations to draw. It is short enough that a loop does not cover itself.
-fn window(e: &Explanation, g: &Geometry, head: f64) -> (f64, f64) {
+fn window(e: &Explanation, g: &Geometry, head: f64) -> Range<f64> {
     let spacing = g.corridor.spacing_m;
     let beyond = 60.0f64.min(e.vehicle.length_m).max(15.0) / spacing;
     let last = g.corridor.len() as f64 - 1.0;
     let rear = head - e.vehicle.length_m / spacing;
     // If the vehicle reaches beyond an end, the road is extended straight, as the certificate assumes.
-    ((rear - beyond).max(0.0).min(rear), (head + beyond).min(last).max(head + 3.0))
+    (rear - beyond).max(0.0).min(rear)..(head + beyond).min(last).max(head + 3.0)
 }
 
 /// Draws the road from one station to another. Parts outside the edge have a paler tone.
-pub(super) fn road(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
+pub(super) fn road(picture: &mut Picture, g: &Geometry, view: &View, stations: &Range<f64>) {
+    let (from, to) = (stations.start, stations.end);
     let (first, last) = (g.span.start as f64, g.span.end as f64 - 1.0);
     let parts = [(from, first.min(to), false), (from.max(first), to.min(last), true), (last.max(from), to, false)];
     picture.group("road", |p| {
@@ -112,8 +116,8 @@ pub(super) fn road(picture: &mut Picture, g: &Geometry, view: &View, (from, to):
 }
 
 /// Draws only the road's edges, over what is already drawn.
-pub(super) fn kerbs(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
-    let (left, right) = edges(g, from, to);
+pub(super) fn kerbs(picture: &mut Picture, g: &Geometry, view: &View, stations: &Range<f64>) {
+    let (left, right) = edges(g, stations.start, stations.end);
     picture.group("kerbs", |p| {
         for edge in [left, right] {
             p.polyline(&view.all(&edge), Style::line(palette::INK, 2.0));
@@ -144,12 +148,13 @@ fn before_and_after(picture: &mut Picture, e: &Explanation, g: &Geometry, view: 
 }
 
 /// Draws the tube of the limiting unit's axle.
-fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (from, to): (f64, f64)) {
+fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, stations: &Range<f64>) {
     let unit = if e.hinge_decides() { g.hinge.unit } else { g.place.unit };
     let Ok(model) = Model::new(&e.vehicle) else { return };
     let all = tubes(&g.corridor, &model, &g.certificate);
     let Some(tube) = all.get(unit) else { return };
-    let keep = |k: &usize| *k as f64 >= from && *k as f64 <= to && tube.lateral_m.get(*k).is_some_and(|m| *m < 20.0);
+    let seen = |k: usize| k as f64 >= stations.start && k as f64 <= stations.end;
+    let keep = |k: &usize| seen(*k) && tube.lateral_m.get(*k).is_some_and(|m| *m < 20.0);
     let side = |left: f64| -> Vec<Point> {
         let place = |k: usize| {
             let pose = Pose { axle: tube.centre[k], heading: tube.heading[k] };
@@ -163,8 +168,9 @@ fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (fr
 }
 
 /// Draws the middle of the corridor, and the plan.
-pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
-    let stations = (from.max(0.0) as usize)..(to.ceil().max(0.0) as usize + 1).min(g.corridor.len());
+pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, stations: &Range<f64>) {
+    let (first, end) = (stations.start.max(0.0) as usize, stations.end.ceil().max(0.0) as usize + 1);
+    let stations = first..end.min(g.corridor.len());
     let middle: Vec<Point> = stations
         .clone()
         .map(|k| {

@@ -94,8 +94,8 @@ fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Res
     let roads = region.roads()?;
     let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let mut explained = match roads.edge(id) {
-        Some(edge) => of_edge(region, (&roads, edge), &model, settings, stop)?,
-        None => of_turn(region, (&roads, id), &model, settings, stop)?,
+        Some(edge) => of_edge(region, &roads, edge, &model, settings, stop)?,
+        None => of_turn(region, &roads, id, &model, settings, stop)?,
     };
     explained.members["policy"] = json!(settings.policy.name());
     explained.members["picture"] = json!(explained.picture.is_some());
@@ -104,7 +104,8 @@ fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Res
 
 fn of_edge(
     region: &Region,
-    (roads, edge): (&RoadIndex, u32),
+    roads: &RoadIndex,
+    edge: u32,
     model: &Model,
     settings: &Settings,
     stop: &Stop,
@@ -126,7 +127,7 @@ fn of_edge(
     let mut members = explain::json(&explanation);
     members["kind"] = json!("edge");
     members["at"] = json!(limiting_place(network, edge, &explanation));
-    members["suppose"] = suppose::of_edge(network, edge, (model, settings), row.as_ref());
+    members["suppose"] = suppose::of_edge(network, edge, model, settings, row.as_ref());
     let measured = region.read(|database| database.measured_on(network, edge))?;
     members["measurements"] = measured.iter().map(Measurement::json).collect();
     let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
@@ -138,7 +139,8 @@ fn of_edge(
 
 fn of_turn(
     region: &Region,
-    (roads, id): (&RoadIndex, i64),
+    roads: &RoadIndex,
+    id: i64,
     model: &Model,
     settings: &Settings,
     stop: &Stop,

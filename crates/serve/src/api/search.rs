@@ -110,7 +110,7 @@ fn of_place(roads: &RoadIndex, place: Position) -> Found {
         "ways": 0,
         "pieces": 0,
     });
-    placed(&mut members, here, (place.lon, place.lat));
+    placed(&mut members, here, place);
     (members, Vec::new())
 }
 
@@ -133,13 +133,14 @@ fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<u32
         "ways": 1,
         "pieces": edges.len(),
     });
-    placed(&mut members, bounds, line.get(line.len() / 2)?.degrees());
+    let (lon, lat) = line.get(line.len() / 2)?.degrees();
+    placed(&mut members, bounds, Position { lon, lat });
     Some((members, edges))
 }
 
-fn placed(members: &mut Value, b: Bounds, (lon, lat): (f64, f64)) {
+fn placed(members: &mut Value, b: Bounds, at: Position) {
     let rounded = |degrees: f64| (degrees * 1e6).round() / 1e6;
     members["bbox"] = json!([b.west, b.south, b.east, b.north].map(rounded));
-    members["lon"] = json!(rounded(lon));
-    members["lat"] = json!(rounded(lat));
+    members["lon"] = json!(rounded(at.lon));
+    members["lat"] = json!(rounded(at.lat));
 }

@@ -191,14 +191,15 @@ fn turn_row(region: &Region, vehicle: &str, policy: Policy, id: i64) -> Result<O
 pub(super) fn of_edge(
     network: &Network,
     edge: u32,
-    (model, settings): (&Model, &Settings),
+    model: &Model,
+    settings: &Settings,
     row: Option<&EdgeRow>,
 ) -> Value {
     let Some(now_m) = width_m_of(network, edge, settings.policy) else { return Value::Null };
     let Some(row) = row.filter(|row| matches!(row.certificate.verdict, Verdict::Safe | Verdict::Unsafe(_))) else {
         return Value::Null;
     };
-    let need_m = certified_need_m((network, edge), (model, settings), row);
+    let need_m = certified_need_m(network, edge, model, settings, row);
     let high_m = need_m.map_or(0.0, |need_m| need_m + ABOVE_NEED_M).max(now_m + MORE_M).min(now_m + MOST_MORE_M);
     let step = |m: f64| (m / WIDTH_STEP_M + 1e-6).floor() * WIDTH_STEP_M;
     json!({
@@ -214,11 +215,7 @@ pub(super) fn of_edge(
 }
 
 /// A width that was certified to do for an edge that lacks room, metres: the stored one, or if that is an estimate, one that is looked for now.
-fn certified_need_m(
-    (network, edge): (&Network, u32),
-    (model, settings): (&Model, &Settings),
-    row: &EdgeRow,
-) -> Option<f64> {
+fn certified_need_m(network: &Network, edge: u32, model: &Model, settings: &Settings, row: &EdgeRow) -> Option<f64> {
     if settings.needs.include(Needs::Edges) || row.certificate.verdict != Verdict::Unsafe(UnsafeReason::Width) {
         return row.need_width_m;
     }

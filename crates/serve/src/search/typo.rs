@@ -9,10 +9,20 @@ pub(super) fn allowed(length: usize) -> usize {
     }
 }
 
+/// What of a word is compared with what was typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Compared {
+    /// All of the word.
+    WholeWord,
+    /// The beginning that fits best, for who is still typing.
+    Beginning,
+}
+
 /// The number of slips between two words, if it is at most `most`: a letter more, less or other, or two neighbours exchanged
-/// (optimal string alignment). `prefix` compares with the beginning of `word` that fits best, for who is still typing.
-pub(super) fn slips(typed: &[char], word: &[char], most: usize, prefix: bool) -> Option<usize> {
-    if word.len() + most < typed.len() || (!prefix && typed.len() + most < word.len()) {
+/// (optimal string alignment).
+pub(super) fn slips(typed: &[char], word: &[char], most: usize, compared: Compared) -> Option<usize> {
+    let whole = compared == Compared::WholeWord;
+    if word.len() + most < typed.len() || (whole && typed.len() + most < word.len()) {
         return None;
     }
     let word = &word[..word.len().min(typed.len() + most)];
@@ -31,7 +41,7 @@ pub(super) fn slips(typed: &[char], word: &[char], most: usize, prefix: bool) ->
         }
         before = std::mem::replace(&mut row, next);
     }
-    let found = if prefix { row.iter().copied().min() } else { row.last().copied() };
+    let found = if whole { row.last().copied() } else { row.iter().copied().min() };
     found.filter(|&slips| slips <= most)
 }
 
@@ -39,21 +49,22 @@ pub(super) fn slips(typed: &[char], word: &[char], most: usize, prefix: bool) ->
 mod tests {
     use super::*;
 
-    fn between(a: &str, b: &str, prefix: bool) -> Option<usize> {
+    fn between(a: &str, b: &str, compared: Compared) -> Option<usize> {
         let letters = |text: &str| text.chars().collect::<Vec<_>>();
-        slips(&letters(a), &letters(b), allowed(a.chars().count()), prefix)
+        slips(&letters(a), &letters(b), allowed(a.chars().count()), compared)
     }
 
     #[test]
     fn slips_are_counted_up_to_the_bound() {
-        assert_eq!(between("burnsde", "burnside", false), Some(1));
-        assert_eq!(between("brunside", "burnside", false), Some(1));
-        assert_eq!(between("muehlweg", "muhlweg", false), Some(1));
-        assert_eq!(between("burnside", "burnside", false), Some(0));
-        assert_eq!(between("brnsd", "burnside", false), None);
-        assert_eq!(between("oak", "oat", false), None);
-        assert_eq!(between("hauprstr", "hauptstrasse", false), None);
-        assert_eq!(between("hauprstr", "hauptstrasse", true), Some(1));
-        assert_eq!(between("", "", false), Some(0));
+        use Compared::{Beginning, WholeWord};
+        assert_eq!(between("burnsde", "burnside", WholeWord), Some(1));
+        assert_eq!(between("brunside", "burnside", WholeWord), Some(1));
+        assert_eq!(between("muehlweg", "muhlweg", WholeWord), Some(1));
+        assert_eq!(between("burnside", "burnside", WholeWord), Some(0));
+        assert_eq!(between("brnsd", "burnside", WholeWord), None);
+        assert_eq!(between("oak", "oat", WholeWord), None);
+        assert_eq!(between("hauprstr", "hauptstrasse", WholeWord), None);
+        assert_eq!(between("hauprstr", "hauptstrasse", Beginning), Some(1));
+        assert_eq!(between("", "", WholeWord), Some(0));
     }
 }

@@ -101,30 +101,24 @@ impl Layer {
     /// Adds a feature of lines. Adds nothing if `lines` is empty.
     pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if !lines.is_empty() {
-            self.any(id, LINESTRING, (lines, false), tag);
+            self.any(id, GeometryType::LineString, lines, tag);
         }
     }
 
     /// Adds a feature of one point.
     pub(super) fn point(&mut self, id: Option<u64>, point: [i32; 2], tag: impl FnOnce(&mut Tags<'_>)) {
-        self.any(id, POINT, (&[vec![point]], false), tag);
+        self.any(id, GeometryType::Point, &[vec![point]], tag);
     }
 
     /// Adds a feature of polygons, given as open rings: outer rings run clockwise on the screen, holes counter-clockwise and after
     /// their outer ring. Adds nothing if `rings` is empty.
     pub(super) fn polygons(&mut self, id: Option<u64>, rings: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if !rings.is_empty() {
-            self.any(id, POLYGON, (rings, true), tag);
+            self.any(id, GeometryType::Polygon, rings, tag);
         }
     }
 
-    fn any(
-        &mut self,
-        id: Option<u64>,
-        kind: u64,
-        (lines, closed): (&[Vec<[i32; 2]>], bool),
-        tag: impl FnOnce(&mut Tags<'_>),
-    ) {
+    fn any(&mut self, id: Option<u64>, kind: GeometryType, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         self.scratch.pairs.clear();
         tag(&mut Tags { layer: self });
         let Scratch { pairs, geometry: shape, feature, .. } = &mut self.scratch;
@@ -135,9 +129,9 @@ impl Layer {
         }
         bytes(feature, 2, pairs); // tags
         varint(feature, field(3, VARINT)); // type
-        varint(feature, kind);
+        varint(feature, kind as u64);
         shape.clear();
-        geometry(shape, lines, closed);
+        geometry(shape, kind, lines);
         bytes(feature, 4, shape); // geometry
         bytes(&mut self.features, 2, feature);
     }
@@ -216,10 +210,14 @@ fn message(out: &mut Vec<u8>, value: Value<'_>) {
 const VARINT: u64 = 0;
 const FIXED_64: u64 = 1;
 const LENGTH: u64 = 2;
-/// Types of geometries.
-const POINT: u64 = 1;
-const LINESTRING: u64 = 2;
-const POLYGON: u64 = 3;
+
+/// The type of a geometry (`GeomType`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum GeometryType {
+    Point = 1,
+    LineString = 2,
+    Polygon = 3,
+}
 
 fn field(number: u64, wire: u64) -> u64 {
     number << 3 | wire
@@ -244,8 +242,8 @@ fn zigzag(value: i64) -> u64 {
 }
 
 /// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points, if any, then `ClosePath` (7) for
-/// rings. Parameters are differences between points (section 4.3).
-fn geometry(out: &mut Vec<u8>, lines: &[Vec<[i32; 2]>], closed: bool) {
+/// the rings of polygons. Parameters are differences between points (section 4.3).
+fn geometry(out: &mut Vec<u8>, kind: GeometryType, lines: &[Vec<[i32; 2]>]) {
     let mut cursor = [0_i32; 2];
     let mut go = |out: &mut Vec<u8>, point: [i32; 2]| {
         for axis in 0..2 {
@@ -261,7 +259,7 @@ fn geometry(out: &mut Vec<u8>, lines: &[Vec<[i32; 2]>], closed: bool) {
             varint(out, (rest.len() as u64) << 3 | 2);
         }
         rest.iter().for_each(|&point| go(out, point));
-        if closed {
+        if kind == GeometryType::Polygon {
             varint(out, 1 << 3 | 7);
         }
     }
@@ -273,23 +271,23 @@ mod tests {
     use super::*;
     use fast_mvt::{MvtReaderRef, MvtValueRef};
 
-    fn geometry(lines: &[Vec<[i32; 2]>], closed: bool) -> Vec<u8> {
+    fn geometry(kind: GeometryType, lines: &[Vec<[i32; 2]>]) -> Vec<u8> {
         let mut out = Vec::new();
-        super::geometry(&mut out, lines, closed);
+        super::geometry(&mut out, kind, lines);
         out
     }
 
     /// The example in section 4.3.5.1 of the specification: (25,17).
     #[test]
     fn a_point_is_the_specifications_example() {
-        assert_eq!(geometry(&[vec![[25, 17]]], false), [9, 50, 34]);
+        assert_eq!(geometry(GeometryType::Point, &[vec![[25, 17]]]), [9, 50, 34]);
     }
 
     /// The example in section 4.3.5.3 of the specification: (2,2) (2,10) (10,10), then (1,1) (3,5).
     #[test]
     fn geometry_is_the_specifications_example() {
         let lines = [vec![[2, 2], [2, 10], [10, 10]], vec![[1, 1], [3, 5]]];
-        assert_eq!(geometry(&lines, false), [9, 4, 4, 18, 0, 16, 16, 0, 9, 17, 17, 10, 4, 8]);
+        assert_eq!(geometry(GeometryType::LineString, &lines), [9, 4, 4, 18, 0, 16, 16, 0, 9, 17, 17, 10, 4, 8]);
     }
 
     /// The example in section 4.3.5.5 of the specification: two polygons, the second one with a hole.
@@ -304,7 +302,7 @@ mod tests {
             9, 0, 0, 26, 20, 0, 0, 20, 19, 0, 15, 9, 22, 2, 26, 18, 0, 0, 18, 17, 0, 15, 9, 4, 13, 26, 0, 8, 8, 0, 0,
             7, 15,
         ];
-        assert_eq!(geometry(&rings, true), expected);
+        assert_eq!(geometry(GeometryType::Polygon, &rings), expected);
     }
 
     #[test]

@@ -145,7 +145,8 @@ impl Overviews {
 
 fn drawn(line: &[LonLat], tile: TileAddress) -> Vec<Vec<[i32; 2]>> {
     let line: Vec<[f64; 2]> = line.iter().map(|&position| tile.units(position)).collect();
-    shape::drawn(&line, tile.z == MOST_ZOOM)
+    let tolerance = if tile.z == MOST_ZOOM { shape::FINE_TOLERANCE } else { shape::TOLERANCE };
+    shape::drawn(&line, tolerance)
 }
 
 fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], tile: TileAddress) -> Vec<Vec<[i32; 2]>> {

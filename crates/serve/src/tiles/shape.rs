@@ -13,11 +13,11 @@ pub(super) const TOLERANCE: f64 = 2.0;
 /// Vertices that are simplified together.
 const TOGETHER: usize = 4096;
 /// The tolerance at the deepest zoom, which clients enlarge. Rounding alone moves points by as much.
-const FINE_TOLERANCE: f64 = 0.5;
+pub(super) const FINE_TOLERANCE: f64 = 0.5;
 
-/// The drawn parts of a line within the tile and its buffer. Each part has at least two different points.
-pub(super) fn drawn(line: &[Point], fine: bool) -> Vec<Vec<[i32; 2]>> {
-    let tolerance = if fine { FINE_TOLERANCE } else { TOLERANCE };
+/// The drawn parts of a line within the tile and its buffer, at most `tolerance` units from it before they are rounded. Each part has at
+/// least two different points.
+pub(super) fn drawn(line: &[Point], tolerance: f64) -> Vec<Vec<[i32; 2]>> {
     clipped(line).into_iter().map(|part| rounded(&simplified(&part, tolerance))).filter(|part| part.len() > 1).collect()
 }
 
@@ -158,11 +158,11 @@ mod tests {
     #[test]
     fn a_line_that_leaves_and_comes_back_is_two() {
         let (inner, outer) = (100.0, 9000.0);
-        let parts = drawn(&[[inner, inner], [outer, inner], [outer, 2000.0], [inner, 2000.0]], false);
+        let parts = drawn(&[[inner, inner], [outer, inner], [outer, 2000.0], [inner, 2000.0]], TOLERANCE);
         let edge = (EXTENT + BUFFER) as i32;
         assert_eq!(parts, [vec![[100, 100], [edge, 100]], vec![[edge, 2000], [100, 2000]]]);
-        assert!(drawn(&[[-500.0, 0.0], [-500.0, 4000.0]], false).is_empty());
-        let across = drawn(&[[-5000.0, 50.0], [9000.0, 50.0]], false);
+        assert!(drawn(&[[-500.0, 0.0], [-500.0, 4000.0]], TOLERANCE).is_empty());
+        let across = drawn(&[[-5000.0, 50.0], [9000.0, 50.0]], TOLERANCE);
         assert_eq!(across, [vec![[-64, 50], [edge, 50]]]);
     }
 
@@ -186,8 +186,9 @@ mod tests {
             line in prop::collection::vec((-6000.0..10_000.0_f64, -6000.0..10_000.0_f64), 2..30), fine: bool
         ) {
             let line: Vec<Point> = line.into_iter().map(|(x, y)| [x, y]).collect();
-            let most = if fine { FINE_TOLERANCE } else { TOLERANCE } + 0.71;
-            for part in drawn(&line, fine) {
+            let tolerance = if fine { FINE_TOLERANCE } else { TOLERANCE };
+            let most = tolerance + 0.71;
+            for part in drawn(&line, tolerance) {
                 prop_assert!(part.len() > 1);
                 for p in part {
                     prop_assert!(p.iter().all(|&c| (-64..=4160).contains(&c)));
@@ -203,7 +204,7 @@ mod tests {
             line in prop::collection::vec((0.0..4000.0_f64, 0.0..4000.0_f64), 2..30)
         ) {
             let line: Vec<Point> = line.into_iter().map(|(x, y)| [x, y]).collect();
-            let parts = drawn(&line, false);
+            let parts = drawn(&line, TOLERANCE);
             for &vertex in &line {
                 let near = parts.iter().flat_map(|part| part.windows(2))
                     .map(|s| distance(vertex, s[0].map(f64::from), s[1].map(f64::from))).fold(f64::INFINITY, f64::min);

@@ -20,7 +20,6 @@ use serde_json::json;
 
 use super::{Options, Target};
 use crate::osm::LonLat;
-use crate::osm::facts::Policy;
 use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use crate::{Destination, ExportError, Layout, Sink, Source};
@@ -176,7 +175,7 @@ impl Writer<'_, '_> {
                 segment.stretches.push(SegmentStretch::new(&edge.row, &location));
             }
             if let Some(stretch) = segment.stretches.last_mut() {
-                stretch.values.take(&edge.row, location.heading, source.ask.policy == Policy::Carriageway);
+                stretch.values.take(&edge.row, location.heading, source.ask.policy);
             }
             if edge.refusal.is_none() {
                 let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::segment::{SegmentStretch, between};
-use crate::osm::facts::{Direction, WidthSource};
+use crate::osm::facts::{Direction, Policy, WidthSource};
 use crate::rows::EdgeRow;
 use crate::words::Named as _;
 
@@ -20,12 +20,12 @@ pub(super) struct Values {
 
 impl Values {
     /// Takes the values of an edge. `carriageway`: its width is that of the whole carriageway.
-    pub(super) fn take(&mut self, row: &EdgeRow, heading: Direction, carriageway: bool) {
+    pub(super) fn take(&mut self, row: &EdgeRow, heading: Direction, policy: Policy) {
         self.exists[heading as usize] = true;
         self.speed_km_h[heading as usize] = row.maxspeed_kmh;
         // A width that is assumed or estimated would come back as mapped.
         let mapped = matches!(row.width_source, Some(WidthSource::Tagged | WidthSource::Surveyed));
-        if let Some(width_m) = row.width_m.filter(|_| carriageway && mapped) {
+        if let Some(width_m) = row.width_m.filter(|_| policy == Policy::Carriageway && mapped) {
             let width_m = (width_m * 1000.0).floor() / 1000.0;
             self.width_m = Some(self.width_m.map_or(width_m, |known| known.min(width_m)));
         }

@@ -7,8 +7,9 @@
 use rustc_hash::FxHashMap;
 
 use super::abbreviations::Abbreviations;
+use super::fold;
+use super::typo::{self, Compared};
 use super::whole::{WholeRoad, refs, whole_roads};
-use super::{fold, typo};
 use crate::network::Network;
 
 /// More typed words are not looked at.
@@ -27,6 +28,13 @@ enum Fit {
     /// So many half slips.
     Slip(u8),
     Not,
+}
+
+/// How exactly a word must be as it was typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Spelling {
+    AsTyped,
+    WithSlips,
 }
 
 /// How a road fits what was typed, the best first.
@@ -148,11 +156,11 @@ impl Finder {
         }
         let asked_ref = self.abbreviations.reference(&typed);
         let typed = self.with_refs(typed);
-        let exact: Vec<Typed> = typed.iter().map(|word| self.typed(word, false)).collect();
+        let exact: Vec<Typed> = typed.iter().map(|word| self.typed(word, Spelling::AsTyped)).collect();
         let mut found = self.ranked(&exact, &asked_ref, 0);
         let few = found.len() < FEW;
         if few {
-            let slips: Vec<Typed> = typed.iter().map(|word| self.typed(word, true)).collect();
+            let slips: Vec<Typed> = typed.iter().map(|word| self.typed(word, Spelling::WithSlips)).collect();
             let without = (0..typed.len() as u8).map(|without| self.ranked(&slips, &asked_ref, without));
             // Words are left out only where nothing else is found.
             let most = if found.is_empty() { typed.len() } else { 1 };
@@ -182,17 +190,17 @@ impl Finder {
         joined
     }
 
-    fn typed(&self, word: &str, slips: bool) -> Typed {
+    fn typed(&self, word: &str, spelling: Spelling) -> Typed {
         let letters = word.chars().count();
         let plain = letters >= 4 && word.chars().all(char::is_alphabetic) && !self.abbreviations.knows(word);
         // `5th`, not the `12a` of a house.
         let ordinal =
             ["st", "nd", "rd", "th"].iter().any(|end| word.strip_suffix(end).is_some_and(|n| n.parse::<u16>().is_ok()));
-        Typed { fits: self.fits(word, slips), telling: plain || ordinal, slips_tell: letters >= 6 }
+        Typed { fits: self.fits(word, spelling), telling: plain || ordinal, slips_tell: letters >= 6 }
     }
 
-    /// How each word of the list fits a typed word. With `slips`, also the words that nearly fit.
-    fn fits(&self, typed: &str, slips: bool) -> Vec<Fit> {
+    /// How each word of the list fits a typed word. With slips, also the words that nearly fit.
+    fn fits(&self, typed: &str, spelling: Spelling) -> Vec<Fit> {
         let mut fits = vec![Fit::Not; self.words.len()];
         let letters: Vec<char> = typed.chars().collect();
         if letters.len() >= LEAST_WITHIN {
@@ -215,7 +223,7 @@ impl Finder {
             }
         }
         let most = typo::allowed(letters.len());
-        if slips && most > 0 {
+        if spelling == Spelling::WithSlips && most > 0 {
             let mut word_letters = Vec::new();
             for (fit, word) in fits.iter_mut().zip(&self.words).filter(|(fit, _)| **fit == Fit::Not) {
                 word_letters.clear();
@@ -223,9 +231,11 @@ impl Finder {
                 // The first letter is rarely wrong, and one that fits spares most comparisons.
                 let near = word_letters.iter().take(2).any(|letter| letters.first() == Some(letter));
                 let slips =
-                    |beginning| typo::slips(&letters, &word_letters, most, beginning).map(|slips| 2 * slips as u8);
+                    |compared| typo::slips(&letters, &word_letters, most, compared).map(|slips| 2 * slips as u8);
                 // A word that fits only at its beginning is half a slip worse.
-                if let Some(slips) = near.then(|| slips(false).or_else(|| Some(slips(true)? + 1))).flatten() {
+                if let Some(slips) =
+                    near.then(|| slips(Compared::WholeWord).or_else(|| Some(slips(Compared::Beginning)? + 1))).flatten()
+                {
                     *fit = Fit::Slip(slips);
                 }
             }
