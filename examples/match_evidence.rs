@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args_os().nth(1).map(PathBuf::from).ok_or("usage: match_evidence FILE.osm.pbf")?;
     let countries = Countries::load()?;
     let extract = read_extract(&path, &|_| {})?;
-    let (network, _) = build(extract, &|at| countries.place(at), &|facts, place, ring_radius_m| {
+    let (network, _) = build(extract, &|at| countries.jurisdiction(at), &|facts, place, ring_radius_m| {
         cross_sections(facts, place, ring_radius_m, countries.rules())
     });
     let mut random = Random(1);

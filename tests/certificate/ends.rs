@@ -8,7 +8,7 @@ use netcert::corridor::Corridor;
 use netcert::stet::{Model, Plan, certify_plan};
 use netcert::vehicle::{Unit, Vehicle};
 use netcert_testing::oracle::attack::{self, Attack};
-use netcert_testing::oracle::claim::{Claim, Place, certify, of};
+use netcert_testing::oracle::claim::{BodyPoint, Claim, certify, of};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::path::Path;
 use netcert_testing::oracle::road;
@@ -271,7 +271,7 @@ fn the_bounds_of_a_straight_hold_however_long_the_vehicle_has_driven() {
             for (unit, of) in vehicle.units.iter().enumerate() {
                 for ahead_m in [of.coupling_to_axle_m + of.front_overhang_m, -of.rear_overhang_m] {
                     for foot_m in [0.0, length_m] {
-                        let place = Place { foot_m, unit, side: draw.sign(), ahead_m };
+                        let place = BodyPoint { foot_m, unit, side: draw.sign(), ahead_m };
                         let aimed = Claim { limiting: place, plan: claim.plan.clone(), ..claim };
                         broken = broken.or_else(|| refuted(&corridor, &vehicle, &aimed, &mut draw, 0));
                     }

@@ -20,7 +20,7 @@ use netcert_testing::oracle::area_attack::Found;
 use netcert_testing::oracle::attack;
 use netcert_testing::oracle::claim::{self, Claim};
 use netcert_testing::oracle::draw::Draw;
-use netcert_testing::oracle::journey::{Journey, Part};
+use netcert_testing::oracle::journey::{Journey, PartClaim};
 use rayon::prelude::*;
 
 /// Places that are attacked in each area and on each stretch between areas.
@@ -171,7 +171,7 @@ fn attacked(driver: &Driver, route: &Route, name: &str, seed: u64) -> Claims {
         let (Some(rsc_m), Some(hinge_margin_rad)) = (result.rsc_m, result.hinge_margin_rad) else { continue };
         let metres = |station: usize| station as f64 * corridor.spacing_m;
         let (from_m, to_m) = (metres(part.stations.start), metres(part.stations.end - 1));
-        let found = journey.attack_part(&Part { from_m, to_m, rsc_m, shrink: result.shrink }, PLACES);
+        let found = journey.attack_part(&PartClaim { from_m, to_m, rsc_m, shrink: result.shrink }, PLACES);
         let claim = Claim { rsc_m, shrink: result.shrink, hinge_margin_rad, plan: Vec::new(), ..whole };
         claims.parts.push(Attacked::of(
             format!("{name}, {:?} at {from_m:.0} to {to_m:.0} m", part.kind),

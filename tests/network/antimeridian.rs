@@ -1,7 +1,7 @@
 //! Roads that end at +180° and −180° at one latitude are one road.
 
 use netcert::network::{Network, build};
-use netcert::osm::facts::{Place, Rules, cross_sections};
+use netcert::osm::facts::{Jurisdiction, Rules, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::osm::{Extract, LonLat};
@@ -28,7 +28,7 @@ fn extract(nodes: &[NodeRecord], ways: &[WayRecord]) -> Extract {
 
 fn network(nodes: &[NodeRecord], ways: &[WayRecord]) -> Network {
     let rules = Rules::builtin().unwrap();
-    let place = |_| Place { country: *b"FJ", left_hand_traffic: true };
+    let place = |_| Jurisdiction { country: *b"FJ", left_hand_traffic: true };
     build(extract(nodes, ways), &place, &|facts, place, ring| cross_sections(facts, place, ring, &rules)).0
 }
 

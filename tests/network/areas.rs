@@ -8,7 +8,7 @@ use netcert::osm::facts::{AreaKind, Policy, RoadClass};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{self, NodeRecord, WayRecord};
 use netcert::osm::{Extract, LonLat};
-use netcert::turns::{KerbSource, Reach, TurnCorridors, turn_corridors};
+use netcert::turns::{KerbSource, LengthClass, TurnCorridors, turn_corridors};
 
 use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, offset, somewhere};
 use netcert_testing::extracts::extract;
@@ -42,7 +42,7 @@ fn square(half_m: f64) -> Vec<[f64; 2]> {
 
 fn corner(drawn: &Drawn) -> TurnCorridors {
     let turn = drawn.turn("EBC");
-    turn_corridors(&drawn.network, turn.movement, Policy::Carriageway, &drawn.params, Reach::Short).unwrap()
+    turn_corridors(&drawn.network, turn.movement, Policy::Carriageway, &drawn.params, LengthClass::Short).unwrap()
 }
 
 fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {

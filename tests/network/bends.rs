@@ -9,7 +9,7 @@ use netcert_testing::junctions::Drawn;
 
 use netcert::network::MovementKind;
 use netcert::osm::facts::Policy;
-use netcert::turns::Reach;
+use netcert::turns::LengthClass;
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
 
@@ -103,7 +103,7 @@ fn a_lorry_goes_on_round_a_bend() {
 fn a_piece_shorter_than_a_lorry_between_two_bends_is_passed() {
     for apart_m in [14.0, 20.0, 26.0] {
         let drawn = jogged(15.0, apart_m);
-        let made = drawn.corridors("Abc", Policy::Carriageway, Reach::Short).unwrap();
+        let made = drawn.corridors("Abc", Policy::Carriageway, LengthClass::Short).unwrap();
         let to_the_end = made.on_road().into_iter().filter(|path| path.turn.end + 1 >= path.corridor.len());
         let widths: Vec<f64> =
             to_the_end.map(|path| path.corridor.left_m.iter().copied().fold(f64::INFINITY, f64::min)).collect();
@@ -124,7 +124,7 @@ fn no_claim_of_a_bend_is_refuted() {
         (jogged(25.0, 12.0), ["Abc", "bcD"], "jog of 25"),
     ] {
         for (name, id) in [(names[0], "EU-SEMI16.5"), (names[1], "US-WB67"), (names[0], "AU-BDOUBLE26")] {
-            let reach = Reach::of(&catalogued(id)).unwrap();
+            let reach = LengthClass::of(&catalogued(id)).unwrap();
             let made = drawn.corridors(name, Policy::Carriageway, reach).unwrap();
             fought += fight::none_is_refuted(&made, id, 2, &format!("{what} {name}"), &mut draw);
         }

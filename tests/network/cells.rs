@@ -150,7 +150,10 @@ fn near(own: &BTreeSet<Cell>, place: LonLat) -> bool {
 fn network(extract: Extract) -> Network {
     let countries = Countries::load().unwrap();
     let rules = countries.rules();
-    build(extract, &|position| countries.place(position), &|way, place, ring| cross_sections(way, place, ring, rules)).0
+    build(extract, &|position| countries.jurisdiction(position), &|way, place, ring| {
+        cross_sections(way, place, ring, rules)
+    })
+    .0
 }
 
 /// All that is said of what some cells own, by the ids of edges and turns. Names, not indices, so that files compare.

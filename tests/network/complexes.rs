@@ -14,7 +14,7 @@ use netcert::osm::Via;
 use netcert::osm::facts::Policy;
 use netcert::route::{Measure, PartKind, Position, Question, passes_over};
 use netcert::stop::Stop;
-use netcert::turns::{Kerbs, Reach};
+use netcert::turns::{Kerbs, LengthClass};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
 
@@ -140,7 +140,7 @@ fn a_route_leads_across_a_complex_as_one_movement() {
 fn the_area_of_a_complex_is_road_or_corner() {
     for apart_m in [4.0, 14.0, 25.0] {
         let drawn = drawn(&staggered(apart_m, ROAD, STREETS));
-        let made = drawn.corridors("NS", Policy::Carriageway, Reach::Short).unwrap();
+        let made = drawn.corridors("NS", Policy::Carriageway, LengthClass::Short).unwrap();
         let places: Vec<_> = ["Wa", "ab", "bE", "Na", "bS"]
             .iter()
             .map(|ends| {
@@ -184,7 +184,7 @@ fn no_claim_of_a_complex_is_refuted() {
     {
         let drawn = drawn(&staggered(apart_m, "highway=secondary width=12", streets));
         for (ends, id) in [("NS", "EU-SEMI16.5"), ("SN", "US-WB40"), ("NS", "AU-BDOUBLE26")] {
-            let reach = Reach::of(&catalogued(id)).unwrap();
+            let reach = LengthClass::of(&catalogued(id)).unwrap();
             let made = drawn.corridors(ends, Policy::Carriageway, reach).unwrap();
             fought += fight::none_is_refuted(&made, id, 2, &format!("{apart_m} {ends}"), &mut draw);
         }

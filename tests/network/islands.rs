@@ -9,7 +9,7 @@ use netcert::osm::facts::{AreaKind, Policy, RoadClass};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::store::{Database, Run};
-use netcert::turns::{Reach, TurnCorridors};
+use netcert::turns::{LengthClass, TurnCorridors};
 use netcert::verdict::{UnsafeReason, Verdict};
 
 use netcert_testing::ascii_map::{AsciiMap, built, no_sections, somewhere};
@@ -42,7 +42,7 @@ fn with(island: &[[f64; 2]]) -> Drawn {
 }
 
 fn made(drawn: &Drawn) -> TurnCorridors {
-    drawn.corridors("EBC", Policy::Carriageway, Reach::Short).unwrap()
+    drawn.corridors("EBC", Policy::Carriageway, LengthClass::Short).unwrap()
 }
 
 fn rsc_m(drawn: &Drawn) -> Option<f64> {
@@ -185,8 +185,13 @@ fn a_crossing_of_hundreds_of_nodes_has_an_area_of_a_few() {
         let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge as usize]);
         from.from_node == i64::from(u32::from('E')) && to.to_node == i64::from(u32::from(on[101]))
     });
-    let made =
-        netcert::turns::corridors_of(&drawn.network, &turn.unwrap(), Policy::Carriageway, &drawn.params, Reach::Short);
+    let made = netcert::turns::corridors_of(
+        &drawn.network,
+        &turn.unwrap(),
+        Policy::Carriageway,
+        &drawn.params,
+        LengthClass::Short,
+    );
     let area = made.unwrap().area.unsigned_area();
     // Strips, and mouths of 15 m at some of the nodes.
     assert!((1000.0..6000.0).contains(&area), "{area}");
@@ -202,7 +207,8 @@ fn a_node_of_forty_roads_has_turns_without_its_other_roads() {
         .iter()
         .fold(AsciiMap::placed(&nodes), |map, end| map.way(&format!("B{end}"), "highway=secondary width=7.3"));
     let drawn = Drawn::new(&map, false, KERB_M);
-    let area = |name: String| drawn.corridors(&name, Policy::Carriageway, Reach::Short).unwrap().area.unsigned_area();
+    let area =
+        |name: String| drawn.corridors(&name, Policy::Carriageway, LengthClass::Short).unwrap().area.unsigned_area();
     let across = area(format!("{}B{}", ends[0], ends[12]));
     // Both roads go straight on. The mouths of the others would add more than 300.
     assert!((2300.0..2700.0).contains(&across), "{across}");

@@ -6,7 +6,7 @@ use geo::{Area as _, BooleanOps as _, LineString, MultiPolygon, Polygon, Rect, V
 use netcert::corridor::Frame;
 use netcert::osm::LonLat;
 use netcert::osm::facts::Policy;
-use netcert::turns::{JunctionArea, KerbSource, Reach, junction_areas, junction_nodes};
+use netcert::turns::{JunctionArea, KerbSource, LengthClass, junction_areas, junction_nodes};
 
 use netcert_testing::ascii_map::{AsciiMap, id_of};
 use netcert_testing::junctions::Drawn;
@@ -68,7 +68,7 @@ fn what_any_turn_may_use_near_the_node_lies_in_the_junctions_area() {
         let mut edges = drawn.network.edges.iter().filter(|edge| edge.from_node == area.node);
         let node = drawn.network.positions(edges.next().unwrap()).next().unwrap();
         for turn in ["EBC", "EBA", "ABD", "CBE"] {
-            let made = drawn.corridors(turn, Policy::Carriageway, Reach::Short).unwrap();
+            let made = drawn.corridors(turn, Policy::Carriageway, LengthClass::Short).unwrap();
             let [x, y] = made.frame.forward(&[node]).unwrap()[0];
             let around = Rect::new((x - 12.0, y - 12.0), (x + 12.0, y + 12.0)).to_polygon();
             let near = made.area.intersection(&around);

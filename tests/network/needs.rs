@@ -11,7 +11,7 @@ use netcert::reporter::Silent;
 use netcert::rows::EdgeCertificate;
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
-use netcert::turns::{Reach, StrokeLine, turn_facts, turn_on};
+use netcert::turns::{LengthClass, StrokeLine, turn_facts, turn_on};
 use netcert::verdict::{UnknownReason, UnsafeReason, Verdict};
 
 use netcert_testing::catalogue::catalogued;
@@ -151,7 +151,7 @@ fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
     let driver = region.driver("AU-SEMI19");
     let (settings, model) = (&driver.permits.settings, &driver.model);
     let mut strokes = region.strokes();
-    let reach = Reach::of(&model.vehicle).unwrap();
+    let reach = LengthClass::of(&model.vehicle).unwrap();
     let (mut kerbs, mut flares, mut asked) = (0, 0, 0);
     for turn in turn_facts(&region.network, &settings.kerbs) {
         let (from, to) = (turn.movement.from, turn.movement.to);

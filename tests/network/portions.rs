@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use netcert::network::{Division, Ground, Network, Portion, PortionRestriction, StrokeOptions};
-use netcert::osm::facts::{Countries, CrossSection, Place, WayFacts, cross_sections};
+use netcert::osm::facts::{Countries, CrossSection, Jurisdiction, WayFacts, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat};
 
@@ -11,12 +11,12 @@ use crate::cells::{ORIGIN, drawn};
 use netcert_testing::ascii_map::offset;
 use netcert_testing::extracts;
 
-type Places<'c> = Box<dyn Fn(LonLat) -> Place + Sync + 'c>;
-type Sections<'c> = Box<dyn Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
+type Places<'c> = Box<dyn Fn(LonLat) -> Jurisdiction + Sync + 'c>;
+type Sections<'c> = Box<dyn Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
 
 fn ground(extract: Extract, countries: &Countries) -> Ground<Places<'_>, Sections<'_>> {
     let rules = countries.rules();
-    let places: Places<'_> = Box::new(|position| countries.place(position));
+    let places: Places<'_> = Box::new(|position| countries.jurisdiction(position));
     let sections: Sections<'_> =
         Box::new(move |way, place, ring_radius_m| cross_sections(way, place, ring_radius_m, rules));
     Ground::new(extract, places, sections, StrokeOptions::default())

@@ -15,7 +15,7 @@ use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
+use netcert::turns::{LengthClass, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
@@ -93,7 +93,7 @@ fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
     let pieces = Drawn::new(&map, false, 12.0);
     assert_eq!(pieces.passages().len(), 12);
     for ends in ["WE", "NS", "EN", "SW"] {
-        let made = |drawn: &Drawn| drawn.corridors(ends, Policy::Carriageway, Reach::Short).unwrap().on_road();
+        let made = |drawn: &Drawn| drawn.corridors(ends, Policy::Carriageway, LengthClass::Short).unwrap().on_road();
         let (a, b) = (made(&whole), made(&pieces));
         let same: Vec<_> = a.iter().filter_map(|a| Some((a, b.iter().find(|b| b.code == a.code)?))).collect();
         assert!(same.len() > 30, "{ends} {} {} {}", a.len(), b.len(), same.len());
@@ -123,7 +123,7 @@ fn long_arcs_leave_it_at_turns_and_tiny_rings_at_unknown() {
     assert!(ring(90.0, 8.0, 8.0, 12.0).passages().is_empty());
     let tiny = ring(5.0, 4.0, 6.0, 4.0);
     assert_eq!(tiny.passages().len(), 12);
-    let made = tiny.corridors("WE", Policy::Carriageway, Reach::Short);
+    let made = tiny.corridors("WE", Policy::Carriageway, LengthClass::Short);
     assert_eq!(made.map(|made| made.seeds().len()), Err(UnknownReason::Geometry));
 }
 
@@ -133,7 +133,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
         let drawn = ring(radius_m, 9.0, 9.0, 12.0);
         let mut looked_at = 0;
         for passage in drawn.passages() {
-            let made = corridors_of(&drawn.network, &passage, policy, &drawn.params, Reach::Short).unwrap();
+            let made = corridors_of(&drawn.network, &passage, policy, &drawn.params, LengthClass::Short).unwrap();
             for path in &made.on_road() {
                 let c = &path.corridor;
                 for k in path.turn.start..path.turn.end {
@@ -157,7 +157,7 @@ fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_betwee
     let drawn = ring(20.0, 9.0, 8.0, 12.0);
     for ends in ["WS", "WE", "WN", "SW", "EN"] {
         let passage = drawn.passage(ends);
-        let made = drawn.corridors(ends, Policy::Carriageway, Reach::Long).unwrap();
+        let made = drawn.corridors(ends, Policy::Carriageway, LengthClass::Long).unwrap();
         assert!(made.on_road().len() > 20, "{ends} {}", made.on_road().len());
         for path in &made.on_road() {
             let c = &path.corridor;
@@ -294,7 +294,7 @@ fn no_claim_of_a_passage_is_refuted() {
         for (ends, id) in
             [("WS", "EU-SEMI16.5"), ("WE", "EU-SEMI16.5"), ("NW", "US-WB40"), ("WE", "AU-BDOUBLE26"), ("EN", "US-WB67")]
         {
-            let reach = Reach::of(&catalogued(id)).unwrap();
+            let reach = LengthClass::of(&catalogued(id)).unwrap();
             let made = drawn.corridors(ends, Policy::Carriageway, reach).unwrap();
             fought += fight::none_is_refuted(&made, id, 2, &format!("R {radius_m} {ends}"), &mut draw);
         }
@@ -307,7 +307,7 @@ fn no_claim_of_a_passage_is_refuted() {
 fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
     let (radius_m, ring_m, arm_m, kerb_m) = (20.0, 8.0, 8.0, 8.0);
     let drawn = ring(radius_m, ring_m, arm_m, kerb_m);
-    let made = drawn.corridors("WE", Policy::Carriageway, Reach::Short).unwrap();
+    let made = drawn.corridors("WE", Policy::Carriageway, LengthClass::Short).unwrap();
     assert!(made.kerb_radius_m.is_some());
     let nodes: Vec<_> = RING.chars().map(id_of).collect();
     let at_ring: Vec<_> = drawn

@@ -16,7 +16,7 @@ use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::turns::{Reach, StrokeLine, turn_corridors};
+use netcert::turns::{LengthClass, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
@@ -103,7 +103,8 @@ fn a_corridor_never_leaves_the_drivable_area() {
         let drawn = Drawn::new(&map, false, kerb_m);
         let mut looked_at = 0;
         for turn in drawn.facts() {
-            let made = turn_corridors(&drawn.network, turn.movement, policy, &drawn.params, Reach::Short).unwrap();
+            let made =
+                turn_corridors(&drawn.network, turn.movement, policy, &drawn.params, LengthClass::Short).unwrap();
             for path in &made.on_road() {
                 let c = &path.corridor;
                 for k in 4 * path.turn.start..4 * path.turn.end.saturating_sub(1) {
@@ -129,7 +130,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
 fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
     let drawn = cross("highway=secondary width=9", false, 8.0);
     for nodes in ["EBC", "EBA", "ABD"] {
-        let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long).unwrap();
+        let made = drawn.corridors(nodes, Policy::Carriageway, LengthClass::Long).unwrap();
         assert!(made.on_road().len() > 20, "{}", made.on_road().len());
         for path in &made.on_road() {
             for (joint, k) in [(path.approach, path.turn.start), (path.departure, path.turn.end - 1)] {
@@ -155,7 +156,7 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
 #[test]
 fn a_path_has_an_area_that_holds_it_and_the_road_behind_it() {
     let drawn = cross("highway=secondary width=9", false, 8.0);
-    for (nodes, reach) in [("EBC", Reach::Short), ("EBA", Reach::Long), ("ABD", Reach::Short)] {
+    for (nodes, reach) in [("EBC", LengthClass::Short), ("EBA", LengthClass::Long), ("ABD", LengthClass::Short)] {
         let made = drawn.corridors(nodes, Policy::Carriageway, reach).unwrap();
         for path in made.on_road() {
             let c = &path.corridor;
@@ -189,7 +190,7 @@ fn two_mouths(apart: usize) -> Drawn {
 #[test]
 fn the_crossings_of_nodes_close_by_belong_to_the_area() {
     let inside = |drawn: &Drawn, across: f64, along: f64| {
-        let made = drawn.corridors("ABG", Policy::Carriageway, Reach::Short).unwrap();
+        let made = drawn.corridors("ABG", Policy::Carriageway, LengthClass::Short).unwrap();
         let frame = made.frame;
         let node = |name: char| {
             let edge = drawn.network.edges.iter().find(|edge| edge.from_node == id_of(name)).unwrap();
@@ -317,7 +318,7 @@ fn no_claim_of_a_turn_is_refuted() {
             ("EBA", "US-WB40"),
             ("DBC", "AU-BDOUBLE26"),
         ] {
-            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap()).unwrap();
+            let made = drawn.corridors(nodes, Policy::Carriageway, LengthClass::of(&catalogued(id)).unwrap()).unwrap();
             fought += fight::none_is_refuted(&made, id, 3, &format!("{width} {nodes}"), &mut draw);
         }
     }
@@ -344,14 +345,14 @@ fn near_a_turn_all_lanes_of_the_direction_count_where_the_settings_say_so() {
     }
     assert!(more > 0);
     // The strip is never less than the policy's own.
-    let corridors = |drawn: &Drawn| drawn.corridors("EBC", Policy::Carriageway, Reach::Short).unwrap();
+    let corridors = |drawn: &Drawn| drawn.corridors("EBC", Policy::Carriageway, LengthClass::Short).unwrap();
     assert_eq!(corridors(&same), corridors(&direction));
 }
 
 #[test]
 fn the_strip_opens_slowly_and_narrows_to_the_lane_away_from_the_turn() {
-    let made = wide_streets(Policy::Direction).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
-    let lane = wide_streets(Policy::Lane).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
+    let made = wide_streets(Policy::Direction).corridors("EBC", Policy::Lane, LengthClass::Short).unwrap();
+    let lane = wide_streets(Policy::Lane).corridors("EBC", Policy::Lane, LengthClass::Short).unwrap();
     let width = |path: &netcert::turns::TurnPath, k: usize| path.corridor.left_m[k] + path.corridor.right_m[k];
     let lane_m = width(&lane.on_road()[0], 0);
     let mut widest_m = 0.0_f64;
@@ -372,7 +373,7 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x51u64));
     let drawn = wide_streets(Policy::Direction);
     for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "US-WB67"), ("DBC", "US-WB40"), ("EBA", "AU-BDOUBLE26")] {
-        let made = drawn.corridors(nodes, Policy::Lane, Reach::of(&catalogued(id)).unwrap()).unwrap();
+        let made = drawn.corridors(nodes, Policy::Lane, LengthClass::of(&catalogued(id)).unwrap()).unwrap();
         fought += fight::none_is_refuted(&made, id, 3, nodes, &mut draw);
     }
     assert!(fought >= 4, "{fought}");

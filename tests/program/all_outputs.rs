@@ -13,7 +13,7 @@ use parquet::record::Field;
 use serde_json::{Value, json};
 
 use super::serve::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const TRAIN: &str = "AU-ATRIPLE53";
 const SEMI: &str = "AU-SEMI19";
@@ -29,7 +29,7 @@ struct Truth {
 }
 
 impl Truth {
-    fn of(place: &Place, vehicle: &str) -> Self {
+    fn of(place: &WorkFolder, vehicle: &str) -> Self {
         let mut truth = Self { edges: BTreeSet::new(), turns: BTreeSet::new(), others: BTreeSet::new() };
         let mut database = place.database();
         for row in database.query(&QueryOptions::new(vehicle, Policy::Carriageway)).unwrap().map(Result::unwrap) {
@@ -129,16 +129,16 @@ fn check_json(what: &str, document: &Value, truth: &Truth, conditional: bool) {
     assert!(found.is_empty(), "{what}: {found:#?}");
 }
 
-fn run(place: &Place, line: &str) -> String {
+fn run(place: &WorkFolder, line: &str) -> String {
     place.netcert(&format!("{line} --quiet")).succeeds().out()
 }
 
-fn run_json(place: &Place, line: &str) -> Value {
+fn run_json(place: &WorkFolder, line: &str) -> Value {
     serde_json::from_str(&run(place, line)).unwrap_or_else(|error| panic!("{line}: {error}"))
 }
 
-fn region() -> (Place, Truth) {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+fn region() -> (WorkFolder, Truth) {
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let truth = Truth::of(&place, TRAIN);
     (place, truth)
 }

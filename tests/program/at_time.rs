@@ -3,7 +3,7 @@
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 
 const CLOSED: &str = "no @ (22:00-06:00)";
 
@@ -42,8 +42,8 @@ fn extract() -> Vec<u8> {
     write_extract(&nodes, &ways)
 }
 
-fn certified() -> Place {
-    let place = Place::empty().file("night.osm.pbf", extract());
+fn certified() -> WorkFolder {
+    let place = WorkFolder::empty().file("night.osm.pbf", extract());
     place.netcert("ingest night.osm.pbf --vehicle EU-SEMI16.5 --corridor carriageway --needs off").succeeds();
     place
 }

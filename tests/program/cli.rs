@@ -9,7 +9,7 @@ use std::io::Read as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use program::{Answer, Place};
+use program::{Answer, WorkFolder};
 use serde_json::{Value, json};
 
 /// The rows of a CSV text without quoted line breaks, by the names in the header.
@@ -35,14 +35,14 @@ fn csv(text: &str) -> Vec<BTreeMap<String, String>> {
         .collect()
 }
 
-fn ids(place: &Place, line: &str) -> BTreeSet<String> {
+fn ids(place: &WorkFolder, line: &str) -> BTreeSet<String> {
     let answer = place.netcert(&format!("query --format csv {line}")).succeeds();
     csv(&answer.out()).into_iter().map(|row| row["edge_id"].clone()).collect()
 }
 
 #[test]
 fn a_road_train_may_use_other_roads_than_a_semi_trailer() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let semi = ids(&place, "--vehicle AU-SEMI19 --verdict safe");
     let train = ids(&place, "--vehicle AU-ATRIPLE53 --verdict safe");
     assert!(train.len() > 50 && train.len() + 20 < semi.len(), "{} of {}", train.len(), semi.len());
@@ -58,7 +58,7 @@ fn a_road_train_may_use_other_roads_than_a_semi_trailer() {
 
 #[test]
 fn every_format_holds_the_same_edges() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let ask = |format: &str| place.netcert(&format!("query --vehicle AU-SEMI19 --format {format}")).succeeds();
     let rows = csv(&ask("csv").out());
     let json = ask("json").json();
@@ -86,7 +86,7 @@ fn every_format_holds_the_same_edges() {
 
 #[test]
 fn conditions_narrow_the_answer() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let all = csv(&place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds().out());
     let with = |keep: &dyn Fn(&BTreeMap<String, String>) -> bool| -> BTreeSet<String> {
         all.iter().filter(|row| keep(row)).map(|row| row["edge_id"].clone()).collect()
@@ -101,7 +101,7 @@ fn conditions_narrow_the_answer() {
 
 #[test]
 fn an_area_is_a_box_or_a_geojson_file() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let features = place.netcert("query --vehicle AU-SEMI19 --format geojson").succeeds().json();
     let line = features["features"][40]["geometry"]["coordinates"].clone();
     let (x, y) = (line[0][0].as_f64().unwrap(), line[0][1].as_f64().unwrap());
@@ -125,20 +125,20 @@ fn an_area_is_a_box_or_a_geojson_file() {
 
 #[test]
 fn a_vehicle_that_is_not_certified_yet_is_and_stays_so() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("ingest {demo} --no-certify").succeeds().tells("no certificates yet");
     let first = place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds().tells("doing it now");
     let again = place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds();
     assert!(!again.err().contains("doing it now") && again.out() == first.out());
     // This database was ingested with another vehicle, too, which must not matter.
-    let ingested = Place::with_demo().netcert("query --vehicle AU-SEMI19 --format csv").succeeds();
+    let ingested = WorkFolder::with_demo().netcert("query --vehicle AU-SEMI19 --format csv").succeeds();
     assert!(first.out() == ingested.out(), "the same certificates as from ingest");
     place.netcert("query --vehicle AU-ATRIPL53").fails().tells("did you mean AU-ATRIPLE53");
 }
 
 #[test]
 fn statistics_add_up() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("stats").succeeds().shows("AU-ATRIPLE53").shows("motorway_link").shows("ingest of demo.osm.pbf");
     let stats = place.netcert("stats --format json").succeeds().json();
     let sum = |rows: &Value, what: &str, keep: &dyn Fn(&Value) -> bool| -> f64 {
@@ -159,7 +159,7 @@ fn statistics_add_up() {
 
 #[test]
 fn certify_adds_policies_and_renews_what_is_there() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("ingest {demo} --vehicle AU-SEMI19 AU-ATRIPLE53 --no-turns").succeeds();
     let by = |policy: &str| ids(&place, &format!("--vehicle AU-SEMI19 --verdict safe --corridor {policy}"));
     place
@@ -174,15 +174,15 @@ fn certify_adds_policies_and_renews_what_is_there() {
         .tells("lane policy: AU-ATRIPLE53, AU-SEMI19")
         .tells("direction policy: AU-SEMI19");
     assert_eq!(by("lane"), before);
-    let bare = Place::empty();
+    let bare = WorkFolder::empty();
     bare.netcert("ingest {demo} --no-certify --quiet").succeeds().tells_nothing();
     bare.netcert("certify").fails().tells("no vehicle is certified here yet");
 }
 
 #[test]
 fn a_vehicle_of_ones_own_is_shown_changed_checked_and_certified() {
-    let shown = Place::empty().netcert("vehicles show AU-SEMI19").succeeds().out();
-    let place = Place::with_demo()
+    let shown = WorkFolder::empty().netcert("vehicles show AU-SEMI19").succeeds().out();
+    let place = WorkFolder::with_demo()
         .file("own.toml", shown.replace("\"AU-SEMI19\"", "\"ours\""))
         .file("twice.toml", &shown)
         .file("wide.toml", shown.replace("\"AU-SEMI19\"", "\"wide\"").replace("width_m = 2.5", "width_m = 25.0"));
@@ -206,7 +206,7 @@ fn what_nothing_bounds_has_no_numbers() {
     let arc: Vec<[f64; 2]> = (1..=18).map(|k| [30.0 + 5.0 * turn(k).sin(), 5.0 - 5.0 * turn(k).cos()]).collect();
     let points = [vec![[0.0, 0.0], [30.0, 0.0]], arc, vec![[0.0, 10.0]]].concat();
     let corridor = json!({"frame": "metres", "points": points, "width_m": 7.0, "smoothing_tolerance_m": 0.5});
-    let place = Place::empty().file("turn.json", corridor.to_string());
+    let place = WorkFolder::empty().file("turn.json", corridor.to_string());
     let told = place.netcert("corridor turn.json --vehicle AU-ATRIPLE53 --out c.json").succeeds().out();
     assert!(told.contains("UNSAFE") && told.contains("none    no bound holds for where the vehicle may be"), "{told}");
     assert!(!told.contains("000.0") && !told.contains("missing") && !told.contains("tightest at"), "{told}");
@@ -225,7 +225,8 @@ fn what_nothing_bounds_has_no_numbers() {
 fn a_corridor_of_ones_own_gets_a_whole_certificate() {
     let bend = r#"{"frame": "metres", "points": [[1000, 0], [1060, 0], [1100, 25], [1140, 60]], "width_m": 7.0}"#;
     let lonlat = r#"{"frame": "lonlat", "points": [[8.69, 49.41], [8.692, 49.41]], "left_m": 3, "right_m": [2, 3]}"#;
-    let place = Place::empty().file("bend.json", bend).file("lonlat.json", lonlat).file("bad.json", "{\"frame\": 3}");
+    let place =
+        WorkFolder::empty().file("bend.json", bend).file("lonlat.json", lonlat).file("bad.json", "{\"frame\": 3}");
     place
         .netcert("corridor bend.json --vehicle EU-SEMI16.5 --out c.json")
         .succeeds()
@@ -263,7 +264,7 @@ fn a_corridor_of_ones_own_gets_a_whole_certificate() {
 
 #[test]
 fn wrong_usage_is_status_2() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     for line in [
         "",
         "ingets x",
@@ -299,9 +300,9 @@ fn wrong_usage_is_status_2() {
 
 #[test]
 fn the_only_database_of_a_folder_needs_no_name() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("stats").fails().tells("name one with --db");
-    let place = Place::with_demo().file("other.gpkg", "of another program");
+    let place = WorkFolder::with_demo().file("other.gpkg", "of another program");
     place.netcert("stats").succeeds();
     let copy = place.read("demo.gpkg");
     let place = place.file("second.gpkg", copy);
@@ -314,12 +315,12 @@ fn the_only_database_of_a_folder_needs_no_name() {
 #[test]
 fn a_damaged_extract_leaves_no_database_and_an_old_one_whole() {
     let whole = std::fs::read(demo()).unwrap();
-    let place = Place::empty().file("cut.osm.pbf", &whole[..whole.len() - 100]).file("text.osm.pbf", "roads");
+    let place = WorkFolder::empty().file("cut.osm.pbf", &whole[..whole.len() - 100]).file("text.osm.pbf", "roads");
     place.netcert("ingest cut.osm.pbf").fails().tells("cut.osm.pbf: at byte ").tells("truncated");
     place.netcert("ingest text.osm.pbf").fails().tells("text.osm.pbf");
     place.netcert("ingest nix.osm.pbf").fails().tells("No such file");
     assert_eq!(place.files(), ["cut.osm.pbf", "text.osm.pbf"]);
-    let place = Place::with_demo().file("cut.osm.pbf", &whole[..whole.len() - 100]);
+    let place = WorkFolder::with_demo().file("cut.osm.pbf", &whole[..whole.len() - 100]);
     let before = place.read("demo.gpkg");
     place.netcert("ingest cut.osm.pbf --db demo.gpkg").fails();
     assert!(place.read("demo.gpkg") == before);
@@ -328,7 +329,7 @@ fn a_damaged_extract_leaves_no_database_and_an_old_one_whole() {
 
 #[test]
 fn a_file_of_someone_elses_is_not_overwritten() {
-    let place = Place::empty().file("letters.gpkg", "dear reader");
+    let place = WorkFolder::empty().file("letters.gpkg", "dear reader");
     place
         .netcert("ingest {demo} --db letters.gpkg")
         .fails()
@@ -342,7 +343,7 @@ fn a_file_of_someone_elses_is_not_overwritten() {
 fn a_region_made_portion_by_portion_has_the_same_bytes() {
     let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
     let ingest = |options: &str| {
-        let place = Place::empty();
+        let place = WorkFolder::empty();
         let line = format!("ingest {} --db region.gpkg --vehicle AU-SEMI19 AU-BDOUBLE26 {options}", path.display());
         let mut command = place.command(&line);
         Answer::of(&line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
@@ -358,7 +359,7 @@ fn a_region_made_portion_by_portion_has_the_same_bytes() {
 #[test]
 fn threads_and_time_of_day_leave_no_trace() {
     let ingest = |line: &str| {
-        let place = Place::empty();
+        let place = WorkFolder::empty();
         let mut command = place.command(line);
         Answer::of(line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
         place.read("demo.gpkg")
@@ -367,7 +368,7 @@ fn threads_and_time_of_day_leave_no_trace() {
     let two = ingest("ingest {demo} --vehicle AU-SEMI19 --threads 2");
     assert!(one == two);
     assert!(one.windows(24).any(|text| text == b"2023-11-14T22:13:20.000Z"));
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let mut wrong = place.command("ingest {demo}");
     Answer::of("epoch", wrong.env("SOURCE_DATE_EPOCH", "yesterday")).fails().tells("SOURCE_DATE_EPOCH=yesterday");
 }
@@ -377,7 +378,7 @@ fn threads_and_time_of_day_leave_no_trace() {
 #[test]
 fn the_demo_ends_with_a_road_that_only_the_shorter_vehicle_fits() {
     use std::os::unix::fs::{PermissionsExt as _, symlink};
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     for folder in ["data", "tools", "target/release", "bin"] {
         std::fs::create_dir_all(place.path(folder)).unwrap();
     }
@@ -397,7 +398,7 @@ fn the_demo_ends_with_a_road_that_only_the_shorter_vehicle_fits() {
 
 #[test]
 fn killed_in_the_middle_the_old_database_is_whole_and_the_next_run_works() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let before = place.read("demo.gpkg");
     let mut run = place.command("ingest {demo} --all-vehicles").stderr(Stdio::null()).spawn().unwrap();
     let deadline = Instant::now() + Duration::from_secs(60);
@@ -420,7 +421,7 @@ fn killed_in_the_middle_the_old_database_is_whole_and_the_next_run_works() {
 #[cfg(unix)]
 #[test]
 fn a_living_run_is_not_disturbed_by_a_second_one() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let line = "ingest {demo} --vehicle AGV-TUG4 --no-turns --quiet";
     let mut first = place.command(line).stderr(Stdio::null()).spawn().unwrap();
     let signal = |name: &str| {
@@ -444,7 +445,7 @@ fn a_living_run_is_not_disturbed_by_a_second_one() {
 
 #[test]
 fn whoever_has_read_enough_may_leave() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let mut command = place.command("query --vehicle AU-SEMI19 --format geojson");
     let mut run = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut begin = [0; 40];
@@ -456,7 +457,7 @@ fn whoever_has_read_enough_may_leave() {
 
 #[test]
 fn quiet_is_quiet() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("query --quiet --vehicle AU-SEMI19").succeeds().tells_nothing();
     place.netcert("--quiet stats").succeeds().tells_nothing();
 }

@@ -6,7 +6,7 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Connection as _, Row as _};
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const PAGE: &str = include_str!("../../docs/columns.md");
 const VEHICLE: &str = "AU-SEMI19";
@@ -124,7 +124,7 @@ fn add_table(found: &mut Found, table: &str, head: &[&str], rows: impl Iterator<
 }
 
 /// All columns that a user's program may read. Columns of the GeoPackage standard are left out.
-async fn database(place: &Place) -> Found {
+async fn database(place: &WorkFolder) -> Found {
     let mut c = SqliteConnection::connect(place.path("demo.gpkg").to_str().unwrap()).await.unwrap();
     let tables = "SELECT name FROM sqlite_schema WHERE type IN ('table', 'view') AND name NOT LIKE 'gpkg\\_%' ESCAPE '\\' \
                   AND name NOT LIKE 'rtree\\_%' ESCAPE '\\' AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\'";
@@ -163,7 +163,7 @@ fn csv(found: &mut Found, table: &str, text: &str) {
 }
 
 /// Tables of the script that loads them, and the rows that it loads.
-fn pgrouting(found: &mut Found, place: &Place) {
+fn pgrouting(found: &mut Found, place: &WorkFolder) {
     let script = String::from_utf8(place.read("pgrouting/load.sql")).unwrap();
     for part in script.split("CREATE TABLE ").skip(1) {
         let (table, rest) = part.split_once(" (").unwrap();
@@ -182,7 +182,7 @@ fn pgrouting(found: &mut Found, place: &Place) {
 }
 
 fn everything() -> Found {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for target in ["csv", "geoparquet", "pgrouting"] {
         place.netcert(&format!("export {target} --vehicle {VEHICLE} --out {target}")).succeeds();
     }

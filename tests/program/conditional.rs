@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use netcert_testing::{program, sheet};
 
-use program::Place;
+use program::WorkFolder;
 
 const VEHICLE: &str = "AU-ATRIPLE53";
 /// Along the Great Inland Highway, straight on.
@@ -12,13 +12,13 @@ const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
 /// From the Stock Route Road round a corner into the Great Inland Highway, where the assumed kerb is too sharp.
 const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.205563";
 
-fn route(place: &Place, more: &str) -> Value {
+fn route(place: &WorkFolder, more: &str) -> Value {
     place.netcert(&format!("route --vehicle {VEHICLE} {more} --format json")).succeeds().json()
 }
 
 #[test]
 fn conditions_are_told_and_never_taken_for_safe() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let answer = route(&place, ROUND_A_CORNER);
     assert_eq!(answer["routes"], Value::Array(Vec::new()), "a route under conditions is no certified route");
     let conditional = &answer["conditional"];
@@ -60,7 +60,7 @@ fn conditions_are_told_and_never_taken_for_safe() {
 
 #[test]
 fn a_certificate_under_conditions_says_so_and_verify_lists_them() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let corner = format!("route --vehicle {VEHICLE} {ROUND_A_CORNER}");
     place
         .netcert(&format!("{corner} --out way.json --svg way.svg"))
@@ -85,7 +85,7 @@ fn a_certificate_under_conditions_says_so_and_verify_lists_them() {
 
 #[test]
 fn the_sheet_has_a_row_for_each_measurement() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let corner = format!("route --vehicle {VEHICLE} {ROUND_A_CORNER}");
     for file in ["sheet.csv", "sheet.html", "sheet.geojson"] {
         place.netcert(&format!("{corner} --sheet {file}")).succeeds().tells("conditions to check");
@@ -115,7 +115,7 @@ fn the_sheet_has_a_row_for_each_measurement() {
 /// The way out of a bare no: the sheet, filled in, makes the route a certified one; without the measurements it is none again.
 #[test]
 fn measurements_close_the_conditions() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let corner = format!("route --vehicle {VEHICLE} {ROUND_A_CORNER}");
     place.netcert(&format!("{corner} --sheet sheet.csv")).succeeds();
     let empty = place.read("sheet.csv");
@@ -142,7 +142,7 @@ fn conditions_that_are_measured_exactly_as_named_suffice() {
         "--from 125.9657120,-30.2354767 --to 125.9953874,-30.2155866",
         "--from 125.9598934,-30.2307860 --to 125.9613480,-30.2331314",
     ] {
-        let place = Place::with_wide_demo(VEHICLE);
+        let place = WorkFolder::with_wide_demo(VEHICLE);
         let edges = |route: &Value| -> Vec<i64> {
             route["parts"].as_array().unwrap().iter().filter_map(|part| part["edge_id"].as_i64()).collect()
         };

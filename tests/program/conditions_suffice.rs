@@ -4,7 +4,7 @@ use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
 use crate::update::place_of;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 use netcert_testing::sheet;
 
 const VEHICLE: &str = "EU-SEMI16.5";
@@ -68,7 +68,7 @@ fn edges(route: &Value) -> Vec<i64> {
 fn thirty_routes_are_certified_once_their_conditions_are_measured() {
     let (mut drawn, mut nodes, mut ways) = (Drawn(7), Vec::new(), Vec::new());
     let trips: Vec<[String; 2]> = (0..ROUTES).map(|number| draw(number, &mut drawn, &mut nodes, &mut ways)).collect();
-    let place = Place::empty().file("roads.osm.pbf", write_extract(&nodes, &ways));
+    let place = WorkFolder::empty().file("roads.osm.pbf", write_extract(&nodes, &ways));
     let made = format!("ingest roads.osm.pbf --db demo.gpkg --vehicle {VEHICLE} --country DE --corridor carriageway");
     place.netcert(&made).succeeds();
     let command = |[from, to]: &[String; 2]| format!("route --vehicle {VEHICLE} --from {from} --to {to}");

@@ -1,11 +1,11 @@
 //! `netcert corners`: the table as text, JSON, CSV and a picture.
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 use netcert_testing::xml;
 
 #[test]
 fn a_table_says_which_kerbs_do_and_what_they_hold_for() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let text = place.netcert("corners --vehicle US-WB40 --angle 90 --svg corners.svg").succeeds();
     text.shows("turn by 90°").shows("0: a sharp corner does").shows("no permit");
     let svg = String::from_utf8(place.read("corners.svg")).unwrap();
@@ -31,7 +31,7 @@ fn a_table_says_which_kerbs_do_and_what_they_hold_for() {
 
 #[test]
 fn what_has_no_table_is_named() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("corners --vehicle US-WB40 --angle 170").ends_as_misuse().tells("a turn is by 15 to 145 degrees");
     place
         .netcert("corners --vehicle US-WB40 EU-SEMI16.5 --angle 90 --svg x.svg")

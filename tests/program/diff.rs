@@ -4,7 +4,7 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const WIDE: [(&str, &str); 3] = [("highway", "primary"), ("width", "12"), ("name", "Wide, \"new\" Road")];
 const NARROW: [(&str, &str); 3] = [("highway", "primary"), ("width", "2.6"), ("ref", "N 1")];
@@ -33,11 +33,11 @@ fn extract(ways: &[(i64, &[(&str, &str)])], side_road_at: Option<(i64, i64)>) ->
 pub(crate) const VEHICLE: &str = "AU-SEMI19";
 
 /// Way 1 becomes narrow, 2 wide, 3 gets a limit of weight, 4 goes, 5 appears, 6 gets a side road, 7 stays.
-pub(crate) fn place() -> Place {
+pub(crate) fn place() -> WorkFolder {
     let old = [(1, &WIDE[..]), (2, &NARROW), (3, &WIDE), (4, &WIDE), (6, &WIDE), (7, &WIDE)];
     let new = [(1, &NARROW[..]), (2, &WIDE), (3, &LIGHT), (5, &WIDE), (6, &WIDE), (7, &WIDE)];
     let place =
-        Place::empty().file("old.osm.pbf", extract(&old, None)).file("new.osm.pbf", extract(&new, Some((6, 3))));
+        WorkFolder::empty().file("old.osm.pbf", extract(&old, None)).file("new.osm.pbf", extract(&new, Some((6, 3))));
     for name in ["old", "new"] {
         place
             .netcert(&format!("ingest {name}.osm.pbf --vehicle {VEHICLE} --corridor carriageway --country AU"))
@@ -46,7 +46,7 @@ pub(crate) fn place() -> Place {
     place
 }
 
-fn changes(place: &Place) -> Vec<Value> {
+fn changes(place: &WorkFolder) -> Vec<Value> {
     place.netcert("diff old.gpkg new.gpkg --format json").succeeds().json()["changes"].as_array().unwrap().clone()
 }
 

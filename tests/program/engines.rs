@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use program::Place;
+use program::WorkFolder;
 use serde_json::Value;
 
 const PAIRS: &str = "40";
@@ -43,13 +43,13 @@ fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -
 }
 
 /// Runs a script with the drawn region and files of the place, and returns the JSON that it prints.
-fn run(python: &Path, script: &str, place: &Place, arguments: &[&str]) -> Value {
+fn run(python: &Path, script: &str, place: &WorkFolder, arguments: &[&str]) -> Value {
     let argument = |name: &&str| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) };
     let line = said(python, script, std::iter::once(demo()).chain(arguments.iter().map(argument)));
     serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
 }
 
-fn export(place: &Place, target: &str, out: &str) {
+fn export(place: &WorkFolder, target: &str, out: &str) {
     let extract = if matches!(target, "csv" | "pgrouting") { "" } else { "--extract {demo}" };
     place.netcert(&format!("export {target} --vehicle AU-SEMI19 --out {out} {extract} --quiet")).succeeds();
 }
@@ -83,7 +83,7 @@ fn keeps_closed_in_tiles(probe: &Value) {
 #[test]
 fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
     let Some(python) = python() else { return };
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     export(&place, "csv", "tables");
     export(&place, "osrm", "osrm");
     export(&place, "osm-pbf", "permits.osm.pbf");
@@ -102,7 +102,7 @@ fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
 #[test]
 fn what_is_refused_is_closed_whatever_its_tags_are() {
     let Some(python) = python() else { return };
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
     said(python, "run_taggings.py", std::iter::once("make".into()).chain(files(&["roads.osm.pbf"])));
     place.netcert("ingest roads.osm.pbf --vehicle AU-SEMI19 --quiet").succeeds();
@@ -134,7 +134,7 @@ fn what_is_refused_is_closed_whatever_its_tags_are() {
 #[test]
 fn refusals_of_every_shape_are_obeyed_and_said_once() {
     let Some(python) = python() else { return };
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
     said(python, "run_shapes.py", std::iter::once("make".into()).chain(files(&["shapes.osm.pbf"])));
     let vehicle = "--vehicle AGV-TUG4 --corridor carriageway --quiet";
@@ -168,7 +168,7 @@ fn refusals_of_every_shape_are_obeyed_and_said_once() {
 #[test]
 fn engines_read_the_limits_of_exports_as_they_are_meant() {
     let Some(python) = python() else { return };
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
     said(python, "run_limits.py", std::iter::once("make".into()).chain(files(&["signs.osm.pbf"])));
     // A vehicle that is below every limit, so that what the engines read decides.
@@ -198,7 +198,7 @@ fn engines_read_the_limits_of_exports_as_they_are_meant() {
 #[test]
 fn valhalla_keeps_to_permits() {
     let Some(python) = python() else { return };
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     export(&place, "csv", "tables");
     export(&place, "valhalla", "valhalla");
     std::fs::create_dir(place.path("work")).unwrap();
@@ -224,7 +224,7 @@ fn pgrouting_keeps_to_permits() {
     if !pgrouting() {
         return;
     }
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     export(&place, "csv", "tables");
     export(&place, "pgrouting", "pgrouting");
     open_to_all(&place);
@@ -241,10 +241,10 @@ fn pgrouting_keeps_to_permits() {
 
 /// PostgreSQL refuses to run as root, so it runs as a user of its own.
 #[cfg(unix)]
-pub(crate) fn open_to_all(place: &Place) {
+pub(crate) fn open_to_all(place: &WorkFolder) {
     use std::os::unix::fs::PermissionsExt as _;
     std::fs::set_permissions(place.path("."), std::fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 #[cfg(not(unix))]
-pub(crate) fn open_to_all(_: &Place) {}
+pub(crate) fn open_to_all(_: &WorkFolder) {}

@@ -13,14 +13,14 @@ use netcert::verdict::{UnknownReason, Verdict};
 use serde_json::Value;
 use sqlx::{AssertSqlSafe, Column as _, Connection as _, Row as _, SqliteConnection};
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// What depends on measurements.
 const CERTIFICATES: [&str; 4] = ["certificate_compact", "plan", "turn_certificate_compact", "turn_plan"];
 const NETWORK: [&str; 7] = ["edge", "turn", "junction", "section", "road", "evidence", "evidence_place"];
 
-fn sql<T>(place: &Place, work: impl AsyncFnOnce(&mut SqliteConnection) -> T) -> T {
+fn sql<T>(place: &WorkFolder, work: impl AsyncFnOnce(&mut SqliteConnection) -> T) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
         let mut c = SqliteConnection::connect(place.path("demo.gpkg").to_str().unwrap()).await.unwrap();
@@ -31,7 +31,7 @@ fn sql<T>(place: &Place, work: impl AsyncFnOnce(&mut SqliteConnection) -> T) -> 
 }
 
 /// All rows of tables, byte for byte.
-fn rows_of<'t>(place: &Place, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<String>> {
+fn rows_of<'t>(place: &WorkFolder, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<String>> {
     sql(place, async |c| {
         let mut all = BTreeMap::new();
         for &table in tables {
@@ -48,20 +48,20 @@ fn rows_of<'t>(place: &Place, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<Strin
     })
 }
 
-fn ids(place: &Place, statement: &str) -> Vec<Vec<i64>> {
+fn ids(place: &WorkFolder, statement: &str) -> Vec<Vec<i64>> {
     sql(place, async |c| {
         let rows = sqlx::query(AssertSqlSafe(statement.to_owned())).fetch_all(c).await.unwrap();
         rows.iter().map(|row| (0..row.len()).map(|column| row.get::<i64, _>(column)).collect()).collect()
     })
 }
 
-fn edges_of(place: &Place) -> Vec<Value> {
+fn edges_of(place: &WorkFolder) -> Vec<Value> {
     let answer = place.netcert(&format!("query --vehicle {VEHICLE} --format json")).succeeds();
     answer.json()["edges"].as_array().unwrap().clone()
 }
 
 /// The edges of the stroke of an edge.
-fn stroke_of(place: &Place, edge_id: i64) -> Vec<i64> {
+fn stroke_of(place: &WorkFolder, edge_id: i64) -> Vec<i64> {
     let statement = format!(
         "SELECT e.edge_id FROM stroke AS s JOIN stroke_edge AS p ON p.position > s.edge_start AND p.position <= s.edge_end \
          JOIN edge AS e ON e.fid = p.fid WHERE s.stroke_no = (SELECT stroke_no FROM stroke JOIN stroke_edge \
@@ -72,7 +72,7 @@ fn stroke_of(place: &Place, edge_id: i64) -> Vec<i64> {
 
 #[test]
 fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let before = rows_of(&place, &[&CERTIFICATES[..], &NETWORK].concat());
     let edges = edges_of(&place);
     let needy: Vec<(i64, f64)> =
@@ -108,7 +108,7 @@ fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map(
     let verify = format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 1");
     for tampered in ["UPDATE evidence_place SET counts = 0 WHERE place_no = 1", "UPDATE evidence_place SET edge_id = 1"]
     {
-        let other = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+        let other = WorkFolder::empty().file("demo.gpkg", place.read("demo.gpkg"));
         assert!(other.sql(tampered) > 0);
         other.netcert(&verify).fails();
     }
@@ -129,7 +129,7 @@ fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map(
 
 #[test]
 fn what_is_certified_again_is_what_certify_makes() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let all = [&CERTIFICATES[..], &NETWORK].concat();
     let before = rows_of(&place, &all);
     let edges = ids(&place, "SELECT edge_id FROM edge ORDER BY fid");
@@ -161,7 +161,7 @@ fn what_is_certified_again_is_what_certify_makes() {
     let kerb = |row: &&Value| row["quantity"] == "kerb_radius" && row["value"] == 14.0;
     assert!(said.as_array().unwrap().iter().any(|row| kerb(&row)), "{said}");
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 40")).succeeds();
-    let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+    let whole = WorkFolder::empty().file("demo.gpkg", place.read("demo.gpkg"));
     whole.netcert("certify").succeeds();
     assert_eq!(rows_of(&whole, &CERTIFICATES), rows_of(&place, &CERTIFICATES));
 
@@ -175,7 +175,7 @@ fn what_is_certified_again_is_what_certify_makes() {
 }
 
 /// A road of three ways, and another extract in which the last one is gone.
-fn drawn(place: Place) -> Place {
+fn drawn(place: WorkFolder) -> WorkFolder {
     let node = |id: i64| NodeRecord {
         id,
         place: LonLat { lon_e7: 80_000_000 + 30_000 * id as i32, lat_e7: 490_000_000 },
@@ -196,7 +196,7 @@ fn drawn(place: Place) -> Place {
 
 #[test]
 fn a_newer_ingest_keeps_the_register_and_says_what_is_matched_otherwise() {
-    let place = drawn(Place::empty());
+    let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
     let rows =
         "quantity,value,way_id,source\ncarriageway_width,6.2,2,a\ncarriageway_width,6.4,3,b\nlane_width,3,77,c\n";
@@ -207,7 +207,7 @@ fn a_newer_ingest_keeps_the_register_and_says_what_is_matched_otherwise() {
         .shows("2 matched, 1 unmatched")
         .shows("way 77 is no road of this network")
         .shows("is less than the map's tagged 7.00 m");
-    let widths = |place: &Place| {
+    let widths = |place: &WorkFolder| {
         sql(place, async |c| {
             let all = "SELECT DISTINCT way_id, carriageway_width_m FROM edge ORDER BY way_id";
             let rows = sqlx::query_as::<_, (i64, f64)>(all).fetch_all(c).await.unwrap();
@@ -231,7 +231,7 @@ fn a_newer_ingest_keeps_the_register_and_says_what_is_matched_otherwise() {
 
 #[test]
 fn of_two_measurements_the_later_counts_and_without_dates_the_lesser() {
-    let place = drawn(Place::empty());
+    let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
     let width = |way: i64| {
         let statement =
@@ -263,7 +263,7 @@ fn of_two_measurements_the_later_counts_and_without_dates_the_lesser() {
 
 #[test]
 fn measured_limits_count_in_place_of_the_map_and_removing_them_restores_it() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let all = [&CERTIFICATES[..], &NETWORK].concat();
     let before = rows_of(&place, &all);
     let edges = edges_of(&place);
@@ -304,7 +304,7 @@ fn measured_limits_count_in_place_of_the_map_and_removing_them_restores_it() {
     assert_eq!(json["measurements"].as_array().map(Vec::len), Some(0));
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150")).succeeds();
     let made = rows_of(&place, &CERTIFICATES);
-    let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+    let whole = WorkFolder::empty().file("demo.gpkg", place.read("demo.gpkg"));
     whole.netcert("certify").succeeds();
     assert_eq!(rows_of(&whole, &CERTIFICATES), made);
     place.netcert("evidence remove --all").succeeds().shows("became safe");
@@ -327,7 +327,7 @@ fn a_measured_limit_replaces_a_tag_and_says_so() {
     };
     let nodes: Vec<NodeRecord> = (1..=3).map(node).collect();
     let extract = write_extract(&nodes, &[way(1, "3.5"), way(2, "low")]);
-    let place = Place::empty()
+    let place = WorkFolder::empty()
         .file("low.osm.pbf", extract)
         .file("limits.csv", "quantity,value,way_id,source\nmax_height,4.2,1,laser\nmax_height,4.2,2,laser\n");
     place.netcert("ingest low.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --corridor carriageway").succeeds();
@@ -351,7 +351,7 @@ fn a_measured_limit_replaces_a_tag_and_says_so() {
 
 #[test]
 fn a_faulty_file_changes_nothing_and_names_row_and_way_out() {
-    let place = drawn(Place::empty());
+    let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
     let before = place.read("demo.gpkg");
     let refused = |name: &str, text: &str, said: &str| {
@@ -390,7 +390,7 @@ fn a_faulty_file_changes_nothing_and_names_row_and_way_out() {
 
 #[test]
 fn a_change_that_fails_at_its_end_leaves_everything_as_it_was() {
-    let place = drawn(Place::empty());
+    let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5").succeeds();
     let all = [&CERTIFICATES[..], &NETWORK].concat();
     place.sql("CREATE TRIGGER fails BEFORE INSERT ON run BEGIN SELECT raise(ABORT, 'no room'); END");
@@ -406,7 +406,7 @@ fn a_change_that_fails_at_its_end_leaves_everything_as_it_was() {
 
 #[test]
 fn certificates_of_a_register_that_changed_meanwhile_are_not_stored() {
-    let place = drawn(Place::empty());
+    let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
     let mut database = netcert::store::Database::open_to_change(&place.path("demo.gpkg")).unwrap();
     let edges = database.load_network().unwrap().edges.len() as u32;

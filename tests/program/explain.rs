@@ -19,20 +19,20 @@ use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnsafeReason, Verdict};
 use netcert::words::verdict_words;
-use program::Place;
+use program::WorkFolder;
 
 fn settings() -> Settings {
     Settings { policy: Policy::Lane, ..Settings::default() }
 }
 
 /// The demo region's network, and the rows of its database for a vehicle, by edge.
-fn demo(place: &Place, id: &str) -> (Network, Vec<EdgeRow>) {
+fn demo(place: &WorkFolder, id: &str) -> (Network, Vec<EdgeRow>) {
     (place.database().load_network().unwrap(), place.rows(id))
 }
 
 #[test]
 fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let (network, rows) = demo(&place, "AU-SEMI19");
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let mut kinds: BTreeMap<(&str, &str), usize> = BTreeMap::new();
@@ -78,7 +78,7 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
 
 #[test]
 fn a_certificate_of_another_version_is_noticed() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let (network, rows) = demo(&place, "AU-SEMI19");
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let row = rows.iter().find(|row| row.certificate.verdict == Verdict::Safe).unwrap();
@@ -124,7 +124,7 @@ fn certified(network: &Network, edge: u32, vehicle: &Vehicle, width_m: f64) -> S
 
 #[test]
 fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let mut checked = 0;
     for id in ["AU-SEMI19", "AU-ATRIPLE53"] {
         let (network, rows) = demo(&place, id);
@@ -281,7 +281,7 @@ fn the_corner_stands_where_geometry_has_it() {
 
 #[test]
 fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let (network, rows) = demo(&place, "AU-ATRIPLE53");
     let model = Model::new(&catalogued("AU-ATRIPLE53")).unwrap();
     let expected = [
@@ -304,7 +304,7 @@ fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
 
 #[test]
 fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let (_, rows) = demo(&place, "AU-ATRIPLE53");
     let row = rows
         .iter()
@@ -349,7 +349,7 @@ fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
 #[test]
 fn a_corridor_file_is_explained_and_drawn() {
     let entry = r#"{"frame": "metres", "points": [[0, 0], [60, 0], [100, 25], [140, 60]], "width_m": 4.0}"#;
-    let place = Place::empty().file("entry.json", entry);
+    let place = WorkFolder::empty().file("entry.json", entry);
     place
         .netcert("corridor entry.json --vehicle EU-SEMI16.5 --svg entry.svg")
         .succeeds()

@@ -9,13 +9,13 @@ use geojson::{Feature, FeatureCollection, GeoJson, GeometryValue};
 use netcert::corridor::Frame;
 use serde_json::Value;
 
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 use netcert_testing::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
 
 /// Ids of edges or turns, one of each verdict and reason, and three of what is safe. The turn without room lacks half a metre.
-fn some_of_each(place: &Place, kind: &str) -> Vec<(String, String)> {
+fn some_of_each(place: &WorkFolder, kind: &str) -> Vec<(String, String)> {
     let option = if kind == "turn" { " --turns" } else { "" };
     let csv =
         place.netcert(&format!("query --vehicle {VEHICLE} --corridor carriageway{option} --format csv")).succeeds();
@@ -41,7 +41,7 @@ fn some_of_each(place: &Place, kind: &str) -> Vec<(String, String)> {
     found
 }
 
-fn shapes(place: &Place, id: &str) -> FeatureCollection {
+fn shapes(place: &WorkFolder, id: &str) -> FeatureCollection {
     let line = format!("explain {id} --vehicle {VEHICLE} --corridor carriageway --format geojson");
     let text = place.netcert(&line).succeeds().out();
     rounded(&text);
@@ -109,7 +109,7 @@ fn well_drawn(feature: &Feature) {
 
 #[test]
 fn the_shapes_are_valid_and_say_what_the_words_say() {
-    let places = [Place::with_wide_demo(VEHICLE), Place::with_unknown_road()];
+    let places = [WorkFolder::with_wide_demo(VEHICLE), WorkFolder::with_unknown_road()];
     let mut seen = BTreeSet::new();
     for (place, kind) in places.iter().flat_map(|place| [(place, "edge"), (place, "turn")]) {
         for (id, _) in some_of_each(place, kind) {
@@ -172,7 +172,7 @@ fn outside_m2(shapes: &FeatureCollection) -> [f64; 2] {
 
 #[test]
 fn the_area_holds_every_body_of_a_safe_turn_and_not_of_one_that_is_too_narrow() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let turns = some_of_each(&place, "turn");
     let mut safe = 0;
     for (id, _) in turns.iter().filter(|turn| turn.1.starts_with("safe")) {
@@ -192,7 +192,7 @@ fn the_area_holds_every_body_of_a_safe_turn_and_not_of_one_that_is_too_narrow() 
 
 #[test]
 fn an_edge_s_strip_holds_its_path_and_has_its_length() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let (id, _) = some_of_each(&place, "edge").into_iter().find(|edge| edge.1.starts_with("safe")).unwrap();
     let shapes = shapes(&place, &id);
     let strip = of(&shapes, "strip").next().unwrap();
@@ -216,7 +216,7 @@ fn gdal_reads_every_shape_with_its_properties() {
     if Command::new("ogrinfo").arg("--version").output().is_err() {
         return skipped("ogrinfo", "Debian: gdal-bin");
     }
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let (id, _) = some_of_each(&place, "turn").into_iter().find(|turn| turn.1.starts_with("safe")).unwrap();
     let line = format!("explain {id} --vehicle {VEHICLE} --corridor carriageway --format geojson");
     let text = place.netcert(&line).succeeds().out();

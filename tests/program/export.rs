@@ -9,16 +9,16 @@ use netcert::export::{Ask, PermitPolicy, Source};
 use netcert::network::MovementKind;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::route::{BARRED, Permits};
-use program::Place;
+use program::WorkFolder;
 
-fn ask(place: &Place, rule: PermitPolicy) -> Ask {
+fn ask(place: &WorkFolder, rule: PermitPolicy) -> Ask {
     let (db, vehicle) = (place.path("demo.gpkg"), "AU-SEMI19".to_owned());
     Ask { db, vehicle, policy: Policy::Lane, rule, at: None, extract: None, relative_to: None }
 }
 
 #[test]
 fn an_export_permits_exactly_what_a_route_may_use() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let source = Source::open(ask(&place, PermitPolicy::default()), &Silent).unwrap();
     let mut database = source.database().unwrap();
     let network = database.load_network().unwrap();
@@ -43,7 +43,7 @@ fn an_export_permits_exactly_what_a_route_may_use() {
 
 #[test]
 fn options_take_permits_away_and_never_add_one() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let open = |rule| Source::open(ask(&place, rule), &Silent).unwrap().permitted;
     let all = open(PermitPolicy::default());
     for rule in [
@@ -61,7 +61,7 @@ fn options_take_permits_away_and_never_add_one() {
 
 #[test]
 fn a_folder_says_what_it_rests_on_and_the_same_input_gives_the_same_bytes() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export csv --vehicle AU-SEMI19 --out one --min-rsc 0.2").succeeds().tells("no legal permit");
     place.netcert("export csv --vehicle AU-SEMI19 --out two/ --min-rsc 0.2 --threads 1").succeeds();
     for file in ["edges.csv", "turns.csv", "netcert.json"] {
@@ -82,7 +82,7 @@ fn a_folder_says_what_it_rests_on_and_the_same_input_gives_the_same_bytes() {
 
 #[test]
 fn an_output_replaces_only_what_an_export_wrote() {
-    let place = Place::with_demo().file("notes.txt", "mine");
+    let place = WorkFolder::with_demo().file("notes.txt", "mine");
     std::fs::create_dir(place.path("full")).unwrap();
     std::fs::write(place.path("full/mine"), "mine").unwrap();
     place.netcert("export csv --vehicle AU-SEMI19 --out full").fails().tells("no folder of an earlier export");
@@ -104,7 +104,7 @@ fn an_output_replaces_only_what_an_export_wrote() {
 #[test]
 fn a_stopped_export_leaves_nothing_behind() {
     use std::process::{Command, Stdio};
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let stopped = (0..20).any(|_| {
         let line = "export valhalla --vehicle AU-SEMI19 --extract {demo} --out valhalla --quiet";
         let mut run = place.command(line).stderr(Stdio::null()).spawn().unwrap();
@@ -129,7 +129,7 @@ fn a_stopped_export_leaves_nothing_behind() {
 fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
     use std::process::{Command, Stdio};
     for (target, out) in [("geojson --layer edges", "edges.geojson"), ("valhalla --extract {demo}", "valhalla")] {
-        let place = Place::with_demo();
+        let place = WorkFolder::with_demo();
         let line = format!("export {target} --vehicle AU-SEMI19 --out {out} --quiet");
         let part = place.path(&format!("{out}.part"));
         let signal = |name: &str, id: u32| {
@@ -160,7 +160,7 @@ fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
 
 #[test]
 fn a_vehicle_is_certified_where_it_is_not_yet() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export csv --vehicle NO-SUCH --out csv").fails().tells("NO-SUCH");
     place
         .netcert("export csv --vehicle AU-BDOUBLE26 --out csv")

@@ -16,7 +16,7 @@ use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::store::QueryOptions;
 use netcert::verdict::Verdict;
 use netcert::words::VerdictKind;
-use program::Place;
+use program::WorkFolder;
 
 /// Pairs of nodes in driving order, and the number of roads of the extract that have each pair.
 fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
@@ -31,7 +31,7 @@ fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
 }
 
 /// Every permitted edge by its places, in driving order.
-fn permitted(place: &Place) -> (Network, BTreeSet<u32>) {
+fn permitted(place: &WorkFolder) -> (Network, BTreeSet<u32>) {
     let mut database = place.database();
     let options = QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("AU-SEMI19", Policy::Lane) };
     let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge).collect();
@@ -39,7 +39,7 @@ fn permitted(place: &Place) -> (Network, BTreeSet<u32>) {
 }
 
 /// The last segments of permitted edges from which the only way on is a refused turn.
-fn up_to_refused_corners(place: &Place, network: &Network, safe: &BTreeSet<u32>) -> BTreeSet<(LonLat, LonLat)> {
+fn up_to_refused_corners(place: &WorkFolder, network: &Network, safe: &BTreeSet<u32>) -> BTreeSet<(LonLat, LonLat)> {
     let mut ends: BTreeMap<i64, BTreeSet<(u32, bool)>> = BTreeMap::new();
     for edge in &network.edges {
         let forward = edge.direction == Direction::Forward;
@@ -61,7 +61,7 @@ fn up_to_refused_corners(place: &Place, network: &Network, safe: &BTreeSet<u32>)
 
 #[test]
 fn osrm_tables_close_every_segment_but_those_of_permitted_edges() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export osrm --vehicle AU-SEMI19 --extract {demo} --out osrm").succeeds();
     let closed: BTreeSet<(i64, i64)> = String::from_utf8(place.read("osrm/segment-speeds.csv"))
         .unwrap()
@@ -104,7 +104,7 @@ fn osrm_tables_close_every_segment_but_those_of_permitted_edges() {
 
 #[test]
 fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for out in ["one.osm.pbf", "two.osm.pbf"] {
         place.netcert(&format!("export osm-pbf --vehicle AU-SEMI19 --extract {{demo}} --out {out}")).succeeds();
     }
@@ -117,8 +117,9 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
     let restrictions = extract.restrictions.len();
     let countries = Countries::load().unwrap();
     let rules = countries.rules();
-    let (network, _) =
-        build(extract, &|place| countries.place(place), &|way, place, ring| cross_sections(way, place, ring, rules));
+    let (network, _) = build(extract, &|place| countries.jurisdiction(place), &|way, place, ring| {
+        cross_sections(way, place, ring, rules)
+    });
     let (old, safe) = permitted(&place);
     let line = |network: &Network, edge: u32| network.positions(&network.edges[edge as usize]).collect::<Vec<_>>();
     let mut open = BTreeSet::new();
@@ -151,7 +152,7 @@ fn an_extract_with_negative_ids_is_refused_with_a_way_out() {
         (write_extract(&[node(-5), node(1), node(2)], &[way(7, &[-5, 1, 2])]), "way 7 has the negative id -5"),
         (write_extract(&[node(1), node(2)], &[way(-7, &[1, 2])]), "way -7 has the negative id -7"),
     ] {
-        let place = Place::empty().file("drawn.osm.pbf", extract);
+        let place = WorkFolder::empty().file("drawn.osm.pbf", extract);
         place.netcert("ingest drawn.osm.pbf --vehicle AU-SEMI19 --quiet").succeeds();
         for target in ["osm-pbf", "valhalla", "osrm"] {
             let line = format!("export {target} --vehicle AU-SEMI19 --extract drawn.osm.pbf --out out");
@@ -163,7 +164,7 @@ fn an_extract_with_negative_ids_is_refused_with_a_way_out() {
 
 #[test]
 fn the_request_for_valhalla_lets_no_place_be_moved_to_another_road() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export valhalla --vehicle AU-SEMI19 --extract {demo} --out valhalla").succeeds();
     let request: serde_json::Value = serde_json::from_slice(&place.read("valhalla/request.json")).unwrap();
     let places = request["locations"].as_array().unwrap();
@@ -180,7 +181,7 @@ fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
     if Command::new("osmium").arg("--version").output().is_err() {
         return skipped("osmium", "Debian: osmium-tool");
     }
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export osm-pbf --vehicle AU-SEMI19 --extract {demo} --out out.osm.pbf").succeeds();
     let osmium = |arguments: &[&str]| {
         let out = Command::new("osmium").args(arguments).arg(place.path("out.osm.pbf")).output().unwrap();
@@ -196,7 +197,7 @@ fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
 
 #[test]
 fn an_extract_is_asked_for_and_must_be_the_right_one() {
-    let place = Place::with_demo().file("other.osm.pbf", write_extract(&[], &[]));
+    let place = WorkFolder::with_demo().file("other.osm.pbf", write_extract(&[], &[]));
     place.netcert("export osrm --vehicle AU-SEMI19 --out osrm").fails().tells("--extract");
     place
         .netcert("export osm-pbf --vehicle AU-SEMI19 --out x.osm.pbf --extract other.osm.pbf")
@@ -212,7 +213,7 @@ fn an_extract_that_is_not_sorted_is_refused_with_the_way_out() {
     let tags = vec![("highway".to_owned(), "primary".to_owned()), ("lanes".to_owned(), "2".to_owned())];
     let way = |id, refs: [i64; 2]| WayRecord { id, refs: refs.to_vec(), tags: tags.clone() };
     let extract = write_extract(&[node(1, 0), node(2, 10_000), node(3, 20_000)], &[way(8, [2, 3]), way(7, [1, 2])]);
-    let place = Place::empty().file("unsorted.osm.pbf", extract);
+    let place = WorkFolder::empty().file("unsorted.osm.pbf", extract);
     place.netcert("ingest unsorted.osm.pbf --vehicle AU-SEMI19").succeeds();
     for target in ["osrm", "osm-pbf"] {
         place
@@ -225,7 +226,7 @@ fn an_extract_that_is_not_sorted_is_refused_with_the_way_out() {
 
 #[test]
 fn pgrouting_tables_name_every_edge_and_the_script_beside_them() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("export pgrouting --vehicle AU-SEMI19 --out pg").succeeds();
     let edges = String::from_utf8(place.read("pg/edge.copy")).unwrap();
     let (network, safe) = permitted(&place);

@@ -8,13 +8,13 @@ use protobuf::Message as _;
 use serde_json::{Value, json};
 use std::io::Read as _;
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 
 /// The drawn region with three measurements that count, of two sources, and one that does not.
-fn measured() -> Place {
-    let place = Place::with_demo();
+fn measured() -> WorkFolder {
+    let place = WorkFolder::with_demo();
     let edges: Vec<i64> = place.rows(VEHICLE).iter().map(|row| row.edge_id).take(3).collect();
     let mut text = "quantity,value,sigma,edge_id,vehicle,source,date,licence\n".to_owned();
     for (edge, source, date, licence) in [
@@ -105,7 +105,7 @@ fn every_format_says_which_measurements_stand_behind_it() {
 
 #[test]
 fn without_measurements_the_header_says_none_and_the_program_nothing() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let told = place.netcert(&format!("export csv --vehicle {VEHICLE} --out csv")).succeeds().err();
     assert!(!told.contains("measurement"), "{told}");
     let header: Value = serde_json::from_slice(&place.read("csv/netcert.json")).unwrap();

@@ -10,20 +10,20 @@ use std::process::Command;
 
 use geo::Intersects as _;
 use geo::{LineString, Polygon};
-use program::{Answer, Place};
+use program::{Answer, WorkFolder};
 use serde_json::Value;
 
 const VEHICLE: &str = "AU-SEMI19";
 
-fn exported(target: &str) -> Place {
-    let place = Place::with_demo();
+fn exported(target: &str) -> WorkFolder {
+    let place = WorkFolder::with_demo();
     place.netcert(&format!("export {target} --vehicle {VEHICLE} --out {target}")).succeeds();
     assert_eq!(place.files().len(), 2, "what is needed only while writing goes: {:?}", place.files());
     place.netcert(&format!("export csv --vehicle {VEHICLE} --out csv")).succeeds();
     place
 }
 
-fn json(place: &Place, name: &str) -> Value {
+fn json(place: &WorkFolder, name: &str) -> Value {
     serde_json::from_slice(&place.read(name)).unwrap()
 }
 
@@ -43,7 +43,7 @@ impl Table {
         Self { head, rows }
     }
 
-    fn ours(place: &Place, layer: &str) -> Self {
+    fn ours(place: &WorkFolder, layer: &str) -> Self {
         Self::of(std::str::from_utf8(&place.read(&format!("csv/{layer}.csv"))).unwrap())
     }
 
@@ -97,7 +97,7 @@ fn geojson_says_what_csv_says() {
 
 #[test]
 fn one_layer_goes_to_standard_output() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for target in ["geojson", "geojsonseq"] {
         let run = format!("export {target} --vehicle {VEHICLE} --layer turns --quiet --out");
         place.netcert(&format!("{run} one.json")).succeeds();
@@ -108,7 +108,7 @@ fn one_layer_goes_to_standard_output() {
 
 #[test]
 fn the_same_input_gives_the_same_bytes_in_every_format() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for (target, files) in [
         ("geoparquet", &["edges.parquet", "turns.parquet"][..]),
         ("flatgeobuf", &["edges.fgb", "turns.fgb"]),
@@ -133,7 +133,7 @@ fn gdal() -> bool {
 }
 
 /// The content of a file as GDAL reads it.
-fn by_gdal(place: &Place, file: &str, more: &[&str]) -> Table {
+fn by_gdal(place: &WorkFolder, file: &str, more: &[&str]) -> Table {
     let mut command = Command::new("ogr2ogr");
     command.args(["-f", "CSV", "/vsistdout/"]).arg(place.path(file)).args(more);
     Table::of(&Answer::of(file, &mut command).succeeds().out())
@@ -200,7 +200,7 @@ fn duckdb_and_pyarrow_read_what_csv_says() {
 }
 
 /// Overture's own models judge every feature of a folder. `None` if they are not installed.
-pub(crate) fn judged_by_models(place: &Place, folder: &str) -> Option<Answer> {
+pub(crate) fn judged_by_models(place: &WorkFolder, folder: &str) -> Option<Answer> {
     let python = engines::python()?;
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_overture.py")).arg(place.path(folder));
@@ -375,7 +375,7 @@ fn areas_stand_on_every_refused_road_and_on_no_other() {
 
 #[test]
 fn an_answer_of_openrouteservice_becomes_rows() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert(&format!("export ors --vehicle {VEHICLE} --out ors")).succeeds();
     let place = place.file("answer.json", r#"{"edge_ids":[7472,12],"graph_timestamp":"2025-11-17T14:18:55Z"}"#);
     let mut command = Command::new("jq");

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 use netcert_testing::python::python;
 use netcert_testing::skip::skipped;
 
@@ -25,7 +25,7 @@ fn debian(module: &str) -> Option<Command> {
 /// GDAL 3.6 compares texts where later versions are lenient; 3.13 asks for more elsewhere.
 #[test]
 fn gdal_s_validator_finds_nothing() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("certify --vehicle AU-SEMI19 --corridor carriageway").succeeds();
     let mut judged = 0;
     for version in ["3.6.4.0", "3.13.3.0"] {
@@ -49,7 +49,7 @@ fn gdal_lists_what_users_read_without_a_warning() {
     if Command::new("ogrinfo").arg("--version").output().is_err() {
         return skipped("ogrinfo", "Debian: gdal-bin");
     }
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let ogrinfo = |arguments: &[&str]| {
         let answer =
             Answer::of("ogrinfo", Command::new("ogrinfo").arg("-ro").arg(place.path("demo.gpkg")).args(arguments));
@@ -95,7 +95,7 @@ fn pyogrio_fiona_and_duckdb_read_what_is_there() {
         "pyogrio==0.13.0",
     ];
     let Some(python) = python("gis", &packages) else { return };
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for target in ["csv", "geoparquet", "flatgeobuf", "geojson"] {
         place.netcert(&format!("export {target} --vehicle {VEHICLE} --out {target}")).succeeds();
     }
@@ -151,7 +151,7 @@ fn qgis_opens_every_layer_in_its_style() {
     let Some(mut python) = debian("qgis.core") else {
         return skipped("qgis", "Debian: python3-qgis");
     };
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     python.arg(script("run_qgis.py")).arg(place.path("demo.gpkg")).arg(place.path("roads.png"));
     let out = Answer::of("run_qgis.py", python.env("QT_QPA_PLATFORM", "offscreen")).succeeds().out();
     for layer in [

@@ -10,7 +10,7 @@ use netcert::manoeuvres::{self, Finding, Guide, Measure, Sureness, Turn, TurnMea
 use netcert::picture;
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert_testing::oracle::turns;
-use program::Place;
+use program::WorkFolder;
 
 /// A rigid lorry: L, front overhang, rear overhang, width.
 fn rigid([length, front, rear, width]: [f64; 4]) -> Vehicle {
@@ -198,7 +198,7 @@ fn pictures_show_path_sweep_and_numbers() {
 
 #[test]
 fn the_program_tells_what_follows_what() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place
         .netcert("manoeuvres --vehicle AU-BDOUBLE26 --svg turns.svg")
         .succeeds()

@@ -4,7 +4,7 @@ use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::words::verdict_words;
 
 use crate::update::place_of;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 type Pairs = &'static [(&'static str, &'static str)];
 
@@ -92,7 +92,7 @@ fn explain_names_the_tag_and_its_value() {
         }
         ways.push(WayRecord { id, refs: vec![3 * id, 3 * id + 1, 3 * id + 2], tags });
     }
-    let place = Place::empty().file("tags.osm.pbf", write_extract(&nodes, &ways));
+    let place = WorkFolder::empty().file("tags.osm.pbf", write_extract(&nodes, &ways));
     place.netcert("ingest tags.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
     let rows = place.rows("EU-SEMI16.5");
     let mut wrong = Vec::new();
@@ -119,7 +119,7 @@ fn a_line_in_a_tag_makes_no_other_tag() {
     let tags = [("highway", "residential"), ("maxheight", "3\nhgv=no")];
     let tags = tags.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
     let way = WayRecord { id: 1, refs: vec![1, 2], tags };
-    let place = Place::empty().file("line.osm.pbf", write_extract(&nodes, &[way]));
+    let place = WorkFolder::empty().file("line.osm.pbf", write_extract(&nodes, &[way]));
     place.netcert("ingest line.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
     let told = crate::update::sql(&place.path("demo.gpkg"), "SELECT DISTINCT legal_tags FROM edge");
     assert_eq!(told.trim(), "maxheight=3 hgv=no");

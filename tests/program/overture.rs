@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::export_formats::judged_by_models;
 use netcert_testing::extracts;
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 use netcert_testing::python;
 
 /// Vehicles and options of every database.
@@ -108,8 +108,8 @@ fn drawn() -> (Vec<Value>, Vec<Value>) {
 }
 
 /// With `release/segment.geojson` and `release/connector.geojson`.
-fn with(segments: &[Value], connectors: &[Value]) -> Place {
-    let place = Place::empty();
+fn with(segments: &[Value], connectors: &[Value]) -> WorkFolder {
+    let place = WorkFolder::empty();
     std::fs::create_dir(place.path("release")).unwrap();
     place
         .file("release/segment.geojson", collection(segments))
@@ -128,7 +128,7 @@ fn count(account: &Account, item: &str, outcome: &str, reason: &str) -> u64 {
 }
 
 /// Releases as GeoParquet, if there is pyarrow.
-fn parquet(place: &Place, folder: &str, out: &str) -> Option<()> {
+fn parquet(place: &WorkFolder, folder: &str, out: &str) -> Option<()> {
     let python = python::tables()?;
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/overture_parquet.py"));
@@ -485,7 +485,7 @@ fn damaged_parquet_is_an_error_and_never_a_panic() {
 fn the_page_does_what_it_says() {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/how-to/overture.md");
     let page = std::fs::read_to_string(page).unwrap();
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     std::fs::create_dir(place.path("data")).unwrap();
     let place = place
         .file("data/demo.osm.pbf", std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")).unwrap());
@@ -517,7 +517,7 @@ fn the_page_does_what_it_says() {
 }
 
 /// Exports a region for a vehicle and makes a database of that. Returns the edges of both by line.
-fn round_trip(place: &Place, made: &str) -> [BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2] {
+fn round_trip(place: &WorkFolder, made: &str) -> [BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2] {
     let export = "export overture --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --out sample";
     place.netcert(export).succeeds();
     if let Some(answer) = judged_by_models(place, "sample") {
@@ -555,7 +555,7 @@ fn assert_same_network([ours, again]: &[BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2], pe
     assert!(again.values().any(|row| row.direction == Direction::Backward));
 }
 
-fn permitted(place: &Place) -> BTreeSet<i64> {
+fn permitted(place: &WorkFolder) -> BTreeSet<i64> {
     place.netcert("export csv --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --out csv").succeeds();
     let mut table = csv::Reader::from_path(place.path("csv/edges.csv")).unwrap();
     let head = table.headers().unwrap().clone();
@@ -566,7 +566,7 @@ fn permitted(place: &Place) -> BTreeSet<i64> {
 
 #[test]
 fn a_sample_of_the_drawn_region_reads_back_as_the_same_network() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let both = round_trip(&place, MADE);
     assert_same_network(&both, &permitted(&place));
 }
@@ -574,7 +574,7 @@ fn a_sample_of_the_drawn_region_reads_back_as_the_same_network() {
 #[test]
 fn a_sample_of_a_real_city_reads_back_as_the_same_network() {
     let Some(sydney) = extracts::extract("sydney_au.osm.pbf") else { return };
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let made = "--vehicle AU-SEMI19 --corridor carriageway --needs off";
     place.netcert(&format!("ingest {} --db demo.gpkg {made}", sydney.display())).succeeds();
     let both = round_trip(&place, made);

@@ -17,7 +17,7 @@ use std::process::Command;
 
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
-use program::Place;
+use program::WorkFolder;
 
 /// What the commands of a page print if they do what the page says.
 const ANSWERS: [(&str, &[&str]); 6] = [
@@ -173,7 +173,7 @@ fn script(page: &Page) -> (String, Option<String>) {
 }
 
 /// Runs a page in a folder: what it prints.
-fn run(page: &Page, place: &Place) -> String {
+fn run(page: &Page, place: &WorkFolder) -> String {
     let (script, missing) = script(page);
     if let Some(missing) = &missing {
         skipped(missing, &format!("commands of {}.md", page.name));
@@ -213,7 +213,7 @@ fn run(page: &Page, place: &Place) -> String {
 
 #[test]
 fn the_commands_of_every_page_run_as_they_stand() {
-    let place = Place::empty().file("drawn.osm.pbf", drawn());
+    let place = WorkFolder::empty().file("drawn.osm.pbf", drawn());
     for page in pages() {
         run(&page, &place);
     }
@@ -241,7 +241,8 @@ fn every_page_has_its_commands_in_blocks_and_writes_to_a_place_of_its_own() {
 
 #[test]
 fn a_command_that_fails_is_told_by_its_line() {
-    let place = Place::empty().file("x.md", "# X\n\nText.\n\n```sh\nEXTRACT=a.osm.pbf\n\ntrue\ncat $EXTRACT\n```\n");
+    let place =
+        WorkFolder::empty().file("x.md", "# X\n\nText.\n\n```sh\nEXTRACT=a.osm.pbf\n\ntrue\ncat $EXTRACT\n```\n");
     let (script, missing) = script(&page(&place.path("x.md")));
     assert_eq!(missing, None);
     std::fs::write(place.path("x.sh"), script).unwrap();

@@ -2,7 +2,7 @@
 
 use netcert_testing::program;
 
-use program::Place;
+use program::WorkFolder;
 use serde_json::Value;
 
 const FILES: [&str; 4] = ["leeway.svg", "rsc.svg", "tubes.json", "tubes.svg"];
@@ -14,7 +14,7 @@ fn safe(answer: &Value, which: &str) -> Vec<u64> {
 
 #[test]
 fn scenarios_one_three_and_five_are_safe_by_the_table_and_by_algorithm_one() {
-    let answer = Place::empty().netcert("paper --format json").succeeds().tells_nothing().json();
+    let answer = WorkFolder::empty().netcert("paper --format json").succeeds().tells_nothing().json();
     assert_eq!(answer["route_length_m"], 543.62);
     assert_eq!(safe(&answer, "table"), [1, 3, 5]);
     assert_eq!(safe(&answer, "simulated"), [1, 3, 5]);
@@ -33,7 +33,7 @@ fn scenarios_one_three_and_five_are_safe_by_the_table_and_by_algorithm_one() {
 
 #[test]
 fn the_table_says_what_is_printed_what_is_computed_and_why_they_differ() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("paper").succeeds().shows("543.62 m").shows("7.683").shows("Why they differ");
     assert_eq!(place.files(), Vec::<String>::new(), "no figures unless asked for");
     place.netcert("help paper").succeeds().shows("--timing").shows("docs/errata.md");
@@ -41,7 +41,7 @@ fn the_table_says_what_is_printed_what_is_computed_and_why_they_differ() {
 
 #[test]
 fn figures_are_the_same_bytes_every_time() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("paper --out a/deep/er --format json").succeeds().tells("tubes.svg");
     place.netcert("paper --out b --threads 1 --format json").succeeds();
     for name in FILES {
@@ -61,7 +61,7 @@ fn figures_are_the_same_bytes_every_time() {
 
 #[test]
 fn run_time_is_measured_on_request() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let answer = place.netcert("paper --timing --out . --format json").succeeds().json();
     assert_eq!(answer["timing"]["algorithm_1"]["seconds"].as_array().unwrap().len(), 10);
     assert!(answer["timing"]["algorithm_1"]["slope_s"].as_f64().unwrap() > 0.0);
@@ -70,13 +70,13 @@ fn run_time_is_measured_on_request() {
 
 #[test]
 fn a_folder_that_cannot_be_made_is_named() {
-    let place = Place::empty().file("taken", "a file");
+    let place = WorkFolder::empty().file("taken", "a file");
     place.netcert("paper --out taken").fails().tells("tubes.svg: cannot write it").tells("--out");
 }
 
 #[test]
 fn tubes_are_functions_of_time() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("paper --out .").succeeds();
     let file: Value = serde_json::from_slice(&place.read("tubes.json")).unwrap();
     let numbers =

@@ -5,11 +5,11 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use netcert_testing::demo::demo;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 #[test]
 fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let hasty = place.netcert("ingest {demo} --vehicle AU-SEMI19 --patience 0").succeeds();
     let counted = |what: &str| place.netcert("stats --format json").succeeds().out().matches(what).count();
     assert!(counted("took_too_long") > 0, "{}", hasty.err());
@@ -19,16 +19,16 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
     assert_eq!(place.files(), ["demo.gpkg"]);
     let hurried = place.read("demo.gpkg");
     place.netcert("certify --vehicle AU-SEMI19").succeeds();
-    let patient = Place::empty();
+    let patient = WorkFolder::empty();
     patient.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
-    let rows = |place: &Place| {
+    let rows = |place: &WorkFolder| {
         let edges = place.rows("AU-SEMI19").into_iter().map(|row| format!("{} {:?}", row.edge_id, row.certificate));
         let turns = place.netcert("query --vehicle AU-SEMI19 --turns --format csv").succeeds().out();
         (edges.collect::<Vec<_>>(), turns)
     };
     assert!(rows(&place) == rows(&patient), "certified again, they are those of a patient run");
     // An update with the same data does what was not done, too.
-    let later = Place::empty().file("demo.gpkg", hurried);
+    let later = WorkFolder::empty().file("demo.gpkg", hurried);
     let extract = demo().display().to_string();
     later.netcert(&format!("update --db demo.gpkg --new-extract {extract}")).succeeds();
     assert!(rows(&later) == rows(&patient), "updated, they are those of a patient run");
@@ -36,7 +36,7 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
 
 #[test]
 fn a_check_without_patience_confirms_nothing_and_ends() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let ask = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 40";
     let hasty = place.netcert(&format!("{ask} --patience 0")).fails();
     let (out, err) = (hasty.out(), hasty.err());
@@ -44,7 +44,7 @@ fn a_check_without_patience_confirms_nothing_and_ends() {
     assert!(err.contains("claims are not confirmed") && err.contains("`--patience SECONDS`"), "{err}");
     place.netcert(ask).succeeds();
     // What took too long to certify claims nothing, however long its check takes.
-    let bare = Place::empty();
+    let bare = WorkFolder::empty();
     bare.netcert("ingest {demo} --vehicle AU-SEMI19 --patience 0").succeeds();
     let hasty = bare.netcert("verify --db demo.gpkg --patience 0").fails().out();
     let claims = bare.netcert("query --vehicle AU-SEMI19 --format csv").succeeds().out();
@@ -65,7 +65,7 @@ fn a_check_without_patience_confirms_nothing_and_ends() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for line in [
         "ingest {demo} --db other.gpkg --all-vehicles --threads 1",
         "certify --vehicle AU-SEMI19 EU-SEMI16.5 AU-BDOUBLE26 --threads 1 --needs all",
@@ -91,7 +91,7 @@ fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {
 
 #[test]
 fn a_log_has_a_line_for_each_stage_and_quiet_runs_have_none() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let log = place.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
     for stage in ["check", "network", "certificates", "turns", "store"] {
         let of_stage = |line: &str| line.starts_with(stage) && line.ends_with('…');

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const SEMI: &str = "AU-SEMI19";
 const TRAIN: &str = "AU-ATRIPLE53";
@@ -26,7 +26,7 @@ fn millimetres(cell: &str) -> Option<i64> {
     (!cell.is_empty()).then(|| (cell.parse::<f64>().unwrap() * 1000.0).round() as i64)
 }
 
-fn csv(place: &Place, line: &str) -> String {
+fn csv(place: &WorkFolder, line: &str) -> String {
     place.netcert(&format!("query --quiet --format csv {line}")).succeeds().out()
 }
 
@@ -42,7 +42,7 @@ fn check_prefix(with: &str, without: &str) {
 
 #[test]
 fn rows_stay_what_they_are_and_get_two_columns() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let mut unsafe_as_reference = 0;
     for (vehicle, reference, turns) in [(SEMI, TRAIN, ""), (SEMI, TRAIN, "--turns"), (TRAIN, SEMI, "")] {
         let without = csv(&place, &format!("--vehicle {vehicle} {turns}"));
@@ -77,7 +77,7 @@ fn rows_stay_what_they_are_and_get_two_columns() {
 
 #[test]
 fn every_format_says_the_same_and_names_the_reference() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     for (list, turns) in [("edges", ""), ("turns", "--turns")] {
         let line = format!("query --vehicle {SEMI} --relative-to {TRAIN} {turns} --format");
         let table = rows(&place.netcert(&format!("{line} csv")).succeeds().tells("It makes nothing safe").out());
@@ -104,7 +104,7 @@ fn every_format_says_the_same_and_names_the_reference() {
 
 #[test]
 fn the_filter_shows_what_is_as_the_reference() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let line = format!("--vehicle {TRAIN} --relative-to {SEMI}");
     let all = rows(&csv(&place, &line));
     let kept = rows(&csv(&place, &format!("{line} --as-reference")));
@@ -119,7 +119,7 @@ fn the_filter_shows_what_is_as_the_reference() {
 
 #[test]
 fn beside_itself_every_vehicle_differs_by_nothing() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for turns in ["", "--turns"] {
         for row in rows(&csv(&place, &format!("--vehicle {SEMI} --relative-to {SEMI} {turns}"))).values() {
             assert_eq!(row["relative_m"], if row["rsc_m"].is_empty() { "" } else { "0.0" }, "{row:?}");
@@ -130,7 +130,7 @@ fn beside_itself_every_vehicle_differs_by_nothing() {
 
 #[test]
 fn query_certifies_a_missing_reference_like_the_vehicle() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert(&format!("certify --vehicle {SEMI} --max-shift 0.5 --no-turns")).succeeds();
     let line = format!("query --vehicle {SEMI} --relative-to AU-BDOUBLE26 --format csv");
     let first =
@@ -145,7 +145,7 @@ fn query_certifies_a_missing_reference_like_the_vehicle() {
 
 #[test]
 fn the_other_verbs_name_the_command_for_a_missing_reference() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let command = "AU-BDOUBLE26 is not certified here under the lane policy; run `netcert certify --vehicle AU-BDOUBLE26 \
                    --corridor lane`";
     for verb in ["stats", &format!("route {ALONG}"), "export csv --out csv"] {
@@ -161,7 +161,7 @@ fn the_other_verbs_name_the_command_for_a_missing_reference() {
 
 #[test]
 fn sets_of_different_settings_do_not_compare() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert(&format!("certify --vehicle {TRAIN} --max-shift 0")).succeeds();
     for verb in ["query", "query --turns", "stats", &format!("route {ALONG}"), "export csv --out csv"] {
         place
@@ -176,7 +176,7 @@ fn sets_of_different_settings_do_not_compare() {
 
 #[test]
 fn statistics_split_each_verdict_and_change_none() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let without = place.netcert("stats --format json").succeeds().json();
     let mut with = place.netcert(&format!("stats --format json --relative-to {SEMI}")).succeeds().json();
     let members = with.as_object_mut().unwrap();
@@ -211,7 +211,7 @@ fn statistics_split_each_verdict_and_change_none() {
 
 #[test]
 fn routes_and_obstacles_are_compared_and_stay_the_same() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     for (vehicle, reference, way) in [(TRAIN, SEMI, ALONG), (SEMI, TRAIN, ALONG), (TRAIN, SEMI, ROUND_A_CORNER)] {
         let line = format!("route --vehicle {vehicle} {way}");
         let without = place.netcert(&format!("{line} --format json")).succeeds().json();
@@ -253,7 +253,7 @@ fn routes_and_obstacles_are_compared_and_stay_the_same() {
 
 #[test]
 fn exports_have_the_columns_and_open_nothing() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let export = |target: &str, more: &str, out: &str| {
         place.netcert(&format!("export {target} --vehicle {SEMI} {more} --out {out}")).succeeds();
     };
@@ -301,7 +301,7 @@ fn exports_have_the_columns_and_open_nothing() {
 
 #[test]
 fn targets_without_columns_name_those_that_have_them() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     for target in ["osrm", "valhalla", "osm-pbf", "pgrouting", "graphhopper", "ors", "overture"] {
         let line = format!("export {target} --vehicle {SEMI} --relative-to {TRAIN} --out out");
         place
@@ -314,7 +314,7 @@ fn targets_without_columns_name_those_that_have_them() {
 
 #[test]
 fn drivable_by_compares_only_where_the_register_knows_a_vehicle_to_go() {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let ask = format!("query --vehicle {TRAIN} --relative-to drivable_by --format csv");
     place.netcert(&ask).fails().tells("the register knows no vehicle that goes anywhere");
     let everywhere = |turns: &str| rows(&csv(&place, &format!("--vehicle {TRAIN} --relative-to {SEMI} {turns}")));

@@ -3,7 +3,7 @@
 use std::process::Stdio;
 use std::time::Duration;
 
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 use netcert_testing::skip::skipped;
 
 const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
@@ -13,7 +13,7 @@ const IN_PORTIONS: &str = "--edges-at-once 1";
 /// The longest run before a kill, milliseconds, by turns: soon after the start, and where several groups of strokes are done.
 const LONGEST_MS: [u32; 2] = [300, 2500];
 
-fn command(place: &Place, line: &str) -> std::process::Command {
+fn command(place: &WorkFolder, line: &str) -> std::process::Command {
     let mut command = place.command(line);
     command.env("SOURCE_DATE_EPOCH", "1700000000");
     command
@@ -30,14 +30,14 @@ fn moments() -> impl Iterator<Item = Duration> {
 
 #[test]
 fn killed_at_a_hundred_moments_it_ends_with_the_same_bytes() {
-    let undisturbed = Place::empty();
+    let undisturbed = WorkFolder::empty();
     Answer::of(LINE, &mut command(&undisturbed, LINE)).succeeds();
     let expected = undisturbed.read("demo.gpkg");
 
     let (mut whole, mut went_on) = (0, 0);
     let mut moments = moments();
     for line in [LINE.to_owned(), format!("{LINE} {IN_PORTIONS}")] {
-        let place = Place::empty();
+        let place = WorkFolder::empty();
         for (kill, moment) in (0..KILLS / 2).zip(moments.by_ref()) {
             let threads = format!("{line} --threads {}", 1 + kill % 2);
             let mut run = command(&place, &threads).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
@@ -62,7 +62,7 @@ fn killed_at_a_hundred_moments_it_ends_with_the_same_bytes() {
 
 #[test]
 fn work_of_other_vehicles_or_settings_is_not_taken() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let kill = || {
         let mut run = place.command(LINE).stderr(Stdio::null()).spawn().unwrap();
         // A block that is still being written counts for nothing: the file must have stopped growing for a moment.
@@ -91,7 +91,7 @@ fn work_of_other_vehicles_or_settings_is_not_taken() {
 #[test]
 fn finished_work_outlives_a_full_disk() {
     use std::process::Command;
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let small = place.path("small");
     std::fs::create_dir(&small).unwrap();
     let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=200k", "tmpfs"]).arg(&small).output();

@@ -3,7 +3,7 @@
 
 use netcert_testing::program;
 
-use program::Place;
+use program::WorkFolder;
 
 /// Along the Great Inland Highway, straight on.
 const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
@@ -12,7 +12,7 @@ const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.2
 
 #[test]
 fn routes_are_told_written_verified_or_explained() {
-    let place = Place::with_wide_demo("AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-ATRIPLE53");
 
     let line = format!("route --vehicle AU-ATRIPLE53 {ALONG} --out way.json --svg way.svg");
     place.netcert(&line).succeeds().shows("a certified route, 0.5 km").shows("to spare where it is tightest");

@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use crate::serve::http::Server;
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// What the database is ingested with.
@@ -25,11 +25,11 @@ const INGESTED: [(&str, &str); 2] = [("--corridor", "carriageway"), ("--map-tole
 const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
 
 /// `demo.gpkg`, ingested so, but with an option set otherwise. Made once for each.
-fn ingested(option: &str) -> Place {
+fn ingested(option: &str) -> WorkFolder {
     static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
     let of_this = Arc::clone(MADE.lock().unwrap().entry(option.to_owned()).or_default());
     let made = of_this.get_or_init(|| {
-        let place = Place::empty();
+        let place = WorkFolder::empty();
         let given: Vec<&str> = option.split(' ').collect();
         let mut line = format!("ingest {{demo}} --db demo.gpkg --vehicle {VEHICLE} {option}");
         for (name, value) in INGESTED.iter().filter(|(name, _)| !given.contains(name)) {
@@ -38,15 +38,15 @@ fn ingested(option: &str) -> Place {
         place.netcert(&line).succeeds();
         place.read("demo.gpkg")
     });
-    Place::empty().file("demo.gpkg", made)
+    WorkFolder::empty().file("demo.gpkg", made)
 }
 
 /// The same without another option.
-fn base() -> Place {
+fn base() -> WorkFolder {
     ingested("")
 }
 
-fn rows(place: &Place, policy: Policy) -> Vec<EdgeRow> {
+fn rows(place: &WorkFolder, policy: Policy) -> Vec<EdgeRow> {
     place.database().query(&QueryOptions::new(VEHICLE, policy)).unwrap().map(Result::unwrap).collect()
 }
 
@@ -56,7 +56,7 @@ fn said(row: &EdgeRow) -> String {
 }
 
 /// A turn that the vehicle may take, and places on the edges before and after it.
-fn corner(place: &Place, policy: Policy) -> Option<(i64, String)> {
+fn corner(place: &WorkFolder, policy: Policy) -> Option<(i64, String)> {
     let turns = place.database().query_turns(&TurnQuery::new(VEHICLE, policy)).unwrap();
     let turn = turns.into_iter().find(|turn| turn.certificate.verdict == Verdict::Safe)?;
     let rows = rows(place, policy);
@@ -83,7 +83,8 @@ fn without_column(text: &str, name: &str) -> Vec<String> {
 fn is_as_if_ingested_with(option: &str, policy: Policy) {
     let (ours, reference) = (base(), ingested(option));
     ours.netcert(&format!("certify --db demo.gpkg --vehicle {VEHICLE} {option}")).succeeds();
-    let set = |place: &Place| place.database().certified_set(VEHICLE, policy).unwrap().unwrap().settings().unwrap();
+    let set =
+        |place: &WorkFolder| place.database().certified_set(VEHICLE, policy).unwrap().unwrap().settings().unwrap();
     assert_eq!(set(&ours), set(&reference));
 
     let [kept, as_ingested, before] =
@@ -125,7 +126,7 @@ fn is_as_if_ingested_with(option: &str, policy: Policy) {
     servers_agree(ours, reference, another, corner.as_ref(), word);
 }
 
-fn exports_agree(places: [&Place; 2], policy: &str) {
+fn exports_agree(places: [&WorkFolder; 2], policy: &str) {
     let line =
         format!("export csv --db demo.gpkg --vehicle {VEHICLE} --corridor {policy} --layer edges --out edges.csv");
     let texts = places.map(|place| {
@@ -144,7 +145,7 @@ fn exports_agree(places: [&Place; 2], policy: &str) {
     assert!(ours["max_shift_m"].is_number() && ours == reference, "{ours} {reference}");
 }
 
-fn servers_agree(ours: Place, reference: Place, edge: i64, corner: Option<&(i64, String)>, policy: &str) {
+fn servers_agree(ours: WorkFolder, reference: WorkFolder, edge: i64, corner: Option<&(i64, String)>, policy: &str) {
     let servers = [ours, reference].map(|place| Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0"));
     let set = format!("vehicle={VEHICLE}&policy={policy}");
     let query = |way: &str| way.replace("--from ", "from=").replace(" --to ", "&to=");
@@ -183,7 +184,7 @@ fn a_set_made_under_another_policy_is_computed_by_it() {
 fn turns_on_demand_are_certified_with_the_settings_of_their_set() {
     let (place, reference) = (base(), ingested("--max-shift 0"));
     place.netcert(&format!("certify --db demo.gpkg --vehicle {VEHICLE} --max-shift 0 --no-turns")).succeeds();
-    let settings = |place: &Place| {
+    let settings = |place: &WorkFolder| {
         let set = place.database().certified_set(VEHICLE, Policy::Carriageway).unwrap().unwrap();
         set.settings().unwrap()
     };
@@ -193,7 +194,8 @@ fn turns_on_demand_are_certified_with_the_settings_of_their_set() {
         .succeeds()
         .tells("The turns of AU-SEMI19 are not certified");
     assert_eq!(settings(&place), settings(&reference));
-    let turns = |place: &Place| place.database().query_turns(&TurnQuery::new(VEHICLE, Policy::Carriageway)).unwrap();
+    let turns =
+        |place: &WorkFolder| place.database().query_turns(&TurnQuery::new(VEHICLE, Policy::Carriageway)).unwrap();
     assert_eq!(turns(&place), turns(&reference));
     let [ours, reference] = [&place, &reference].map(|place| rows(place, Policy::Carriageway));
     assert_eq!(ours.iter().map(said).collect::<Vec<_>>(), reference.iter().map(said).collect::<Vec<_>>());

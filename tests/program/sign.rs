@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 use netcert_testing::program;
 use netcert_testing::skip::skipped;
 
-use program::Place;
+use program::WorkFolder;
 
 const VEHICLE: &str = "AU-ATRIPLE53";
 /// Round a corner whose assumed kerb is too sharp: only a route under conditions leads there.
 const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.205563";
 
 /// Runs OpenSSL in a place. Without OpenSSL a test says so and skips.
-fn openssl(place: &Place, line: &str) -> Option<std::process::Output> {
+fn openssl(place: &WorkFolder, line: &str) -> Option<std::process::Output> {
     let mut command = Command::new("openssl");
     command.current_dir(place.path("")).args(line.split_whitespace());
     let output = command.output().inspect_err(|e| skipped("openssl", &e.to_string())).ok()?;
@@ -26,15 +26,15 @@ fn openssl(place: &Place, line: &str) -> Option<std::process::Output> {
 }
 
 /// A place with `route.json`, a route under conditions that is signed with `ours.pem`.
-fn signed_route() -> Place {
-    let place = Place::with_wide_demo(VEHICLE);
+fn signed_route() -> WorkFolder {
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     place.netcert(&format!("route --vehicle {VEHICLE} {ROUND_A_CORNER} --out route.json")).succeeds();
     place.netcert("keygen ours.pem").succeeds();
     place.netcert("sign route.json --key ours.pem --name Authority").succeeds();
     place
 }
 
-fn document(place: &Place, name: &str) -> Value {
+fn document(place: &WorkFolder, name: &str) -> Value {
     let mut document: Value = serde_json::from_slice(&place.read(name)).unwrap();
     document.as_object_mut().unwrap().shift_remove("sha256").unwrap();
     document
@@ -143,7 +143,8 @@ fn every_member_changed_or_removed_is_refused() {
 
 #[test]
 fn a_signature_is_of_one_of_the_given_keys() {
-    let place = Place::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
+    let place =
+        WorkFolder::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
     place.netcert("corridor c.json --vehicle AU-SEMI19 --out o.json").succeeds();
     let fingerprint = place.netcert("keygen ours.pem").succeeds().out();
     place.netcert("keygen theirs.pem --public theirs.pub").succeeds();
@@ -171,7 +172,8 @@ fn a_signature_is_of_one_of_the_given_keys() {
 
 #[test]
 fn the_same_input_is_signed_with_the_same_bytes() {
-    let place = Place::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
+    let place =
+        WorkFolder::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
     place.netcert("corridor c.json --vehicle AU-SEMI19 --out o.json").succeeds();
     place.netcert("keygen ours.pem").succeeds();
     let unsigned = place.read("o.json");
@@ -189,7 +191,8 @@ fn the_same_input_is_signed_with_the_same_bytes() {
 
 #[test]
 fn openssl_makes_keys_and_confirms_signatures() {
-    let place = Place::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
+    let place =
+        WorkFolder::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
     place.netcert("corridor c.json --vehicle AU-SEMI19 --out o.json").succeeds();
     let Some(made) = openssl(&place, "genpkey -algorithm ed25519 -out theirs.pem") else { return };
     assert!(made.status.success(), "{made:?}");
@@ -217,7 +220,8 @@ fn openssl_makes_keys_and_confirms_signatures() {
 
 #[test]
 fn key_files_that_do_not_serve_are_named_with_the_way_out() {
-    let place = Place::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
+    let place =
+        WorkFolder::empty().file("c.json", r#"{"frame": "metres", "points": [[0, 0], [60, 0]], "width_m": 4.0}"#);
     place.netcert("corridor c.json --vehicle AU-SEMI19 --out o.json").succeeds();
     place.netcert("keygen ours.pem").succeeds();
     let place = place.file("empty.pem", "").file("text.pem", "no key\n").file("long.pem", vec![b'x'; 100_000]);
@@ -261,7 +265,7 @@ fn key_files_that_do_not_serve_are_named_with_the_way_out() {
 
 #[test]
 fn a_database_that_is_changed_after_it_was_signed_is_refused() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     let fingerprint = place.netcert("keygen ours.pem").succeeds().out();
     place.netcert("keygen theirs.pem").succeeds();
     let verify = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 5";
@@ -284,7 +288,7 @@ fn a_database_that_is_changed_after_it_was_signed_is_refused() {
 
     let signed = place.read("demo.gpkg");
     for (sql, table) in changes() {
-        let place = Place::empty().file("demo.gpkg", &signed).file("ours.pub.pem", place.read("ours.pub.pem"));
+        let place = WorkFolder::empty().file("demo.gpkg", &signed).file("ours.pub.pem", place.read("ours.pub.pem"));
         for trigger in ["insert", "update1", "update2", "update3", "update4", "delete"] {
             if sql.contains(" edge ") {
                 place.sql(&format!("DROP TRIGGER rtree_edge_geom_{trigger}"));
@@ -343,7 +347,7 @@ fn changes() -> Vec<(String, String)> {
 
 #[test]
 fn what_netcert_changes_itself_makes_a_signature_invalid() {
-    let place = Place::with_demo();
+    let place = WorkFolder::with_demo();
     place.netcert("keygen ours.pem").succeeds();
     place.netcert("sign --db demo.gpkg --key ours.pem").succeeds();
     let verify = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 5 --key ours.pub.pem";
@@ -364,7 +368,7 @@ fn the_commands_of_the_page_work() {
             return skipped(program, "a command of the page");
         }
     }
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     std::fs::create_dir(place.path("data")).unwrap();
     std::fs::copy(netcert_testing::demo::demo(), place.path("data/demo.osm.pbf")).unwrap();
     let netcert = Path::new(env!("CARGO_BIN_EXE_netcert")).parent().unwrap().to_owned();

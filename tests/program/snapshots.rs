@@ -1,11 +1,11 @@
 //! What people read, whole: help, `query`, `explain`, `route` and `stats` of the shipped region. A change of a word is seen in a review
 //! of the files in `snapshots/`. `cargo insta review`, or `INSTA_UPDATE=always` in the environment of the test, writes them anew.
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 /// The answers of a group: each with its command, and what goes to standard error behind a line.
 fn written(name: &str, lines: &[&str]) {
-    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
     let told: Vec<String> = lines
         .iter()
         .map(|line| {

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use netcert_testing::{program, sheet};
 
-use program::Place;
+use program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 const WIDE: &[(&str, &str)] = &[("highway", "primary"), ("width", "24.5")];
@@ -69,16 +69,16 @@ impl Drawing {
 
 /// A town, and three blocks beyond bridges: a large one in the east, a small one in the north, and the largest in the south, to which
 /// the road bends more sharply than the vehicle can.
-fn islands() -> Place {
+fn islands() -> WorkFolder {
     static MADE: OnceLock<Vec<u8>> = OnceLock::new();
     let made = MADE.get_or_init(|| {
-        let place = Place::empty().file("islands.osm.pbf", drawn().extract());
+        let place = WorkFolder::empty().file("islands.osm.pbf", drawn().extract());
         let ingest =
             format!("ingest islands.osm.pbf --db islands.gpkg --vehicle {VEHICLE} --corridor carriageway --needs off");
         place.netcert(&ingest).succeeds();
         place.read("islands.gpkg")
     });
-    Place::empty().file("islands.gpkg", made)
+    WorkFolder::empty().file("islands.gpkg", made)
 }
 
 fn drawn() -> Drawing {
@@ -105,7 +105,7 @@ fn drawn() -> Drawing {
     map
 }
 
-fn survey(place: &Place, more: &str) -> Value {
+fn survey(place: &WorkFolder, more: &str) -> Value {
     let line = format!("survey --db islands.gpkg --vehicle {VEHICLE} {more} --quiet --format json");
     place.netcert(&line).succeeds().json()
 }
@@ -123,9 +123,9 @@ fn measures(step: &Value) -> Vec<&Value> {
 /// On the drawn region corners open most. The first one opens more than the second, and both open what was said.
 #[test]
 fn what_the_best_measurements_open_is_what_they_open_once_they_are_in() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let line = format!("survey --db demo.gpkg --vehicle {VEHICLE} --limit 2 --quiet --format");
-    let json = |place: &Place| place.netcert(&format!("{line} json")).succeeds().json();
+    let json = |place: &WorkFolder| place.netcert(&format!("{line} json")).succeeds().json();
     let found = json(&place);
     let steps = found["steps"].as_array().unwrap();
     assert_eq!(steps.len(), 2);

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use netcert_testing::program;
 
-use program::Place;
+use program::WorkFolder;
 
 #[test]
 fn turns_are_listed_explained_and_renewed_from_the_database_alone() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("ingest {demo} --vehicle AU-SEMI19 --corridor direction").succeeds().tells("turn certificates");
     let rows = place.netcert("query --vehicle AU-SEMI19 --turns --format csv").succeeds().tells("Kerb radii");
     let csv = rows.out();
@@ -40,7 +40,7 @@ fn turns_are_listed_explained_and_renewed_from_the_database_alone() {
 
 #[test]
 fn a_refused_turn_says_what_happens_and_what_would_do() {
-    let place = Place::with_wide_demo("AU-SEMI19");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19");
     let json = place.netcert("query --vehicle AU-SEMI19 --turns --format geojson").succeeds().json();
     let (mut seen, mut unbounded, mut certified) = (BTreeMap::new(), 0, 0);
     for feature in json["features"].as_array().unwrap() {

@@ -8,17 +8,17 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
 use netcert_testing::extracts;
-use netcert_testing::program::{Answer, Place};
+use netcert_testing::program::{Answer, WorkFolder};
 use netcert_testing::skip::skipped;
 
 /// Vehicle and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";
 
-pub(crate) fn run(place: &Place, line: &str) -> Answer {
+pub(crate) fn run(place: &WorkFolder, line: &str) -> Answer {
     Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000"))
 }
 
-fn osmium(place: &Place, arguments: &[&str]) -> Option<()> {
+fn osmium(place: &WorkFolder, arguments: &[&str]) -> Option<()> {
     let done = Command::new("osmium").args(arguments).current_dir(place.path(".")).output().ok()?;
     assert!(done.status.success(), "osmium {arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
     Some(())
@@ -136,8 +136,8 @@ fn changes() -> String {
     )
 }
 
-pub(crate) fn place() -> Place {
-    let place = Place::empty().file("grid.osm.pbf", grid()).file("1.osc", changes());
+pub(crate) fn place() -> WorkFolder {
+    let place = WorkFolder::empty().file("grid.osm.pbf", grid()).file("1.osc", changes());
     run(&place, &format!("ingest grid.osm.pbf {MADE}")).succeeds();
     place
 }
@@ -224,9 +224,9 @@ fn real_changes(opl: &str, seed: u64) -> String {
 }
 
 /// Databases of Sydney, `old.gpkg` and `new.gpkg`: before and after the changes `c.osc`, which are made from osmium's text form of the extract.
-fn sydney_before_and_after(changes: impl Fn(&str) -> String) -> Option<Place> {
+fn sydney_before_and_after(changes: impl Fn(&str) -> String) -> Option<WorkFolder> {
     let path = extracts::extract("sydney_au.osm.pbf")?;
-    let place = Place::empty().file("none.osc", format!("{HEAD}</osmChange>"));
+    let place = WorkFolder::empty().file("none.osc", format!("{HEAD}</osmChange>"));
     // osmium does not keep the box of the header, by which edges near the border are marked.
     if osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]).is_none() {
         skipped("osmium", "Debian: osmium-tool");

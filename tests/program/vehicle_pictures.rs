@@ -6,7 +6,7 @@ use netcert_testing::xml;
 
 use netcert::picture;
 use netcert::vehicle::{Catalogue, VehicleError};
-use program::Place;
+use program::WorkFolder;
 
 #[test]
 fn every_catalogue_vehicle_is_drawn_with_all_its_units_and_numbers() {
@@ -70,7 +70,7 @@ fn names_cannot_break_a_picture() {
 
 #[test]
 fn the_program_draws_beside_showing() {
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     place.netcert("vehicles show EU-CAT18.75 --svg cat.svg").succeeds().shows("[[vehicle.unit]]").tells("cat.svg");
     xml::well_formed(&String::from_utf8(place.read("cat.svg")).unwrap());
     place.netcert("vehicles show EU-CAT18.75 --svg no/such/folder.svg").fails().tells("cannot write the picture");
@@ -149,7 +149,8 @@ fn the_catalogue_passes_and_its_odd_ones_are_known() {
 
 #[test]
 fn warnings_go_to_standard_error_and_do_not_fail() {
-    let place = Place::empty().file("odd.toml", pair(2.0, 1.9, -0.2, 40.0)).file("bad.toml", pair(2.0, 2.3, 0.2, 45.0));
+    let place =
+        WorkFolder::empty().file("odd.toml", pair(2.0, 1.9, -0.2, 40.0)).file("bad.toml", pair(2.0, 2.3, 0.2, 45.0));
     place
         .netcert("vehicles check odd.toml")
         .succeeds()

@@ -3,12 +3,12 @@
 
 use netcert_testing::program;
 
-use program::Place;
+use program::WorkFolder;
 
 const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60 --input {demo}";
 
 /// The statements after which `verify` confirms an honest database all the same.
-pub(crate) fn survivors<'s>(changes: &'s [String], verify: &str, honest: impl Fn() -> Place) -> Vec<&'s String> {
+pub(crate) fn survivors<'s>(changes: &'s [String], verify: &str, honest: impl Fn() -> WorkFolder) -> Vec<&'s String> {
     let survives = |sql: &&String| {
         let place = honest();
         assert!(place.sql(sql) > 0, "{sql}: nothing to change");
@@ -19,7 +19,7 @@ pub(crate) fn survivors<'s>(changes: &'s [String], verify: &str, honest: impl Fn
 
 #[test]
 fn every_column_changed_in_the_unsafe_direction_is_refuted() {
-    let honest = Place::with_demo().netcert(VERIFY).succeeds();
+    let honest = WorkFolder::with_demo().netcert(VERIFY).succeeds();
     println!("{}", honest.out());
     let safe = "verdict_no = 0";
     let changes = [
@@ -51,7 +51,7 @@ fn every_column_changed_in_the_unsafe_direction_is_refuted() {
         "UPDATE edge SET name = 'Elsewhere' WHERE fid = 9".to_owned(),
     ];
     let survivors = survivors(&changes, VERIFY, || {
-        let place = Place::with_demo();
+        let place = WorkFolder::with_demo();
         // The spatial triggers call functions that plain SQLite lacks; certificates do not rest on them.
         for trigger in ["insert", "update1", "update2", "update3", "update4", "delete"] {
             place.sql(&format!("DROP TRIGGER rtree_edge_geom_{trigger}"));
@@ -61,7 +61,7 @@ fn every_column_changed_in_the_unsafe_direction_is_refuted() {
     // The demo region has nothing unknown.
     let sql = "UPDATE certificate_compact SET verdict_no = 0, rsc_mm = 100, hinge_margin_cdeg = 100, limiting_at = 0 \
                WHERE verdict_no BETWEEN 30 AND 39";
-    let place = Place::with_unknown_road();
+    let place = WorkFolder::with_unknown_road();
     let verify = "verify --db demo.gpkg --vehicle AU-SEMI19 --input unknown.osm.pbf";
     place.netcert(verify).succeeds();
     assert!(place.sql(sql) > 0, "{sql}: nothing to change");

@@ -5,7 +5,7 @@ use netcert_testing::mutations::{COLUMNS, add, each, leeway, other_side, said, s
 use netcert_testing::program;
 
 use netcert::check::certificate;
-use program::Place;
+use program::WorkFolder;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -34,7 +34,7 @@ fn subjects() -> Vec<(&'static str, &'static str, &'static str, String)> {
 
 fn certificates() -> Vec<(&'static str, String)> {
     let make = |(name, vehicle, shift, corridor): (&'static str, &str, &str, String)| {
-        let place = Place::empty().file("c.json", corridor);
+        let place = WorkFolder::empty().file("c.json", corridor);
         place.netcert(&format!("corridor c.json --vehicle {vehicle} --max-shift {shift} --out o.json")).succeeds();
         (name, String::from_utf8(place.read("o.json")).unwrap())
     };

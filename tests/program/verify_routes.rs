@@ -2,7 +2,7 @@
 
 use netcert_testing::program;
 
-use program::Place;
+use program::WorkFolder;
 
 /// Round corners and over roundabouts of the drawn region, with all of the carriageway: vehicle, from, to, and what is among its parts.
 const ROUTES: [(&str, &str, &str, &str); 6] = [
@@ -16,7 +16,7 @@ const ROUTES: [(&str, &str, &str, &str); 6] = [
 
 #[test]
 fn routes_round_corners_are_confirmed() {
-    let place = Place::with_wide_demo("AU-SEMI19 EU-SEMI16.5 AGV-TUG4");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19 EU-SEMI16.5 AGV-TUG4");
     for (number, (id, from, to, kind)) in ROUTES.into_iter().enumerate() {
         let file = format!("{number}.json");
         let line = format!("route --vehicle {id} --from {from} --to {to} --out {file} --format json");

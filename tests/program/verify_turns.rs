@@ -4,14 +4,14 @@
 use crate::verify_database::survivors;
 use netcert_testing::{extracts, program};
 
-use program::Place;
+use program::WorkFolder;
 
 /// Beside turns that are safe, these are too narrow for it.
 const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
 
 #[test]
 fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
-    let told = Place::with_wide_demo("AU-SEMI19").netcert(VERIFY).succeeds().out();
+    let told = WorkFolder::with_wide_demo("AU-SEMI19").netcert(VERIFY).succeeds().out();
     println!("{told}");
     let safe = "verdict_no = 0";
     let changes = [
@@ -37,7 +37,7 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
         "DELETE FROM turn_certificate_compact WHERE fid = 5".to_owned(),
         "DELETE FROM certified_turns".to_owned(),
     ];
-    let survivors = survivors(&changes, VERIFY, || Place::with_wide_demo("AU-SEMI19"));
+    let survivors = survivors(&changes, VERIFY, || WorkFolder::with_wide_demo("AU-SEMI19"));
     println!("mutation score of turns: {} of {}", changes.len() - survivors.len(), changes.len());
     assert!(survivors.is_empty(), "{survivors:#?}");
 }
@@ -45,7 +45,7 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
 /// A limiting place with more room than the RSC promises nothing too much: the RSC is too low there. It is told, and every claim holds.
 #[test]
 fn a_limiting_place_with_more_room_is_a_remark() {
-    let place = Place::with_wide_demo("AU-SEMI19");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19");
     let wide = "verdict_no = 0 AND limiting_at < 2 AND rsc_mm > 20";
     assert!(place.sql(&format!("UPDATE turn_certificate_compact SET rsc_mm = 20 WHERE {wide}")) > 0);
     let told = place.netcert("verify --db demo.gpkg --vehicle AU-SEMI19").succeeds().out();
@@ -56,7 +56,7 @@ fn a_limiting_place_with_more_room_is_a_remark() {
 /// Where radii are a few metres, stations must lie close to follow from each other, and the checker must ask its adjoint early.
 #[test]
 fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
-    let made = Place::empty();
+    let made = WorkFolder::empty();
     made.netcert("ingest {demo} --db demo.gpkg --vehicle AGV-TUG4 --corridor lane").succeeds();
     let told = made.netcert("verify --db demo.gpkg --vehicle AGV-TUG4 --sample 100").out();
     let mut rows = told.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
@@ -70,7 +70,7 @@ fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
 #[test]
 fn all_claims_of_a_town_are_confirmed() {
     let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
-    let place = Place::empty();
+    let place = WorkFolder::empty();
     let made = "--db town.gpkg --vehicle EU-SEMI16.5 --vehicle AU-SEMI19 --corridor carriageway --needs off";
     place.netcert(&format!("ingest {} {made}", path.display())).succeeds();
     let told = place.netcert("verify --db town.gpkg").succeeds().out();

@@ -3,7 +3,7 @@
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
 use crate::update::{place_of, sql};
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 #[test]
 fn a_lane_that_both_directions_share_is_told() {
@@ -21,7 +21,7 @@ fn a_lane_that_both_directions_share_is_told() {
         let tags = tags.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
         ways.push(WayRecord { id, refs: vec![2 * id, 2 * id + 1], tags });
     }
-    let place = Place::empty().file("lanes.osm.pbf", write_extract(&nodes, &ways));
+    let place = WorkFolder::empty().file("lanes.osm.pbf", write_extract(&nodes, &ways));
     place.netcert("ingest lanes.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
     for (way, shared) in [(1, true), (2, false), (3, false), (4, true)] {
         let column =
@@ -43,7 +43,7 @@ fn a_width_that_cannot_be_read_is_named() {
         [(1, 0.0), (2, 150.0)].map(|(id, east_m)| NodeRecord { id, place: place_of(east_m, 0.0), tags: Vec::new() });
     let tags = [("highway", "residential"), ("width", "50")].map(|(key, value)| (key.to_owned(), value.to_owned()));
     let way = WayRecord { id: 1, refs: vec![1, 2], tags: tags.to_vec() };
-    let place = Place::empty().file("width.osm.pbf", write_extract(&nodes, &[way]));
+    let place = WorkFolder::empty().file("width.osm.pbf", write_extract(&nodes, &[way]));
     place.netcert("ingest width.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
     let edge = place.rows("EU-SEMI16.5")[0].edge_id;
     place.netcert(&format!("explain {edge} --vehicle EU-SEMI16.5")).succeeds().shows("width=50 cannot be read");

@@ -14,7 +14,7 @@ use super::paths::best_of;
 use crate::reporter::Reporter;
 use crate::stop::{Stop, Stopped};
 use netcert_kernel::stet::{Model, Options};
-use netcert_roads::turns::{DrawnCorner, Reach};
+use netcert_roads::turns::{DrawnCorner, LengthClass};
 
 /// The usual angles of a table, degrees: what the vehicle turns by.
 pub const CORNER_ANGLES_DEG: [f64; 8] = [30.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0];
@@ -46,7 +46,7 @@ impl Corners {
         reporter: &dyn Reporter,
         stop: &Stop,
     ) -> Result<Option<Self>, Stopped> {
-        let Some(reach) = Reach::of(&model.vehicle) else { return Ok(None) };
+        let Some(reach) = LengthClass::of(&model.vehicle) else { return Ok(None) };
         reporter.begin("corners", angles_deg.len() as u64);
         let done = AtomicU64::new(0);
         let of_angle = |&turn_deg: &f64| {
@@ -78,7 +78,7 @@ struct Angle<'a> {
     turn_rad: f64,
     model: &'a Model,
     options: &'a Options,
-    reach: Reach,
+    reach: LengthClass,
 }
 
 impl Angle<'_> {

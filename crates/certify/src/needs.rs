@@ -18,7 +18,7 @@ use crate::rows::TurnNeed;
 use crate::settings::Settings;
 use crate::stet::{Case, Model, SpanResult, certify_cases, certify_spans};
 use crate::verdict::UnknownReason;
-use netcert_roads::turns::{Reach, StrokeLine, TurnFacts, TurnParams, turn_on};
+use netcert_roads::turns::{LengthClass, StrokeLine, TurnFacts, TurnParams, turn_on};
 
 /// Widths are tried in these parts of a metre.
 const WIDTHS: f64 = 20.0;
@@ -338,7 +338,7 @@ impl TurnCase<'_> {
 
     /// Whether the turn is safe on one of its paths.
     fn is_safe(&self, params: &TurnParams, line: &LineOf<'_>) -> bool {
-        let Some(reach) = Reach::of(&self.model.vehicle) else { return false };
+        let Some(reach) = LengthClass::of(&self.model.vehicle) else { return false };
         let over = (self.turn.movement, &self.turn.through[..]);
         let made = turn_on(self.network, over, line, self.settings.policy, params, reach).ok();
         made.is_some_and(|made| fits(&made, self.model, &self.settings.stet))

@@ -8,7 +8,7 @@ use crate::network::Network;
 use crate::settings::Settings;
 use crate::stet::{Model, SpanResult, certify_planned};
 use crate::stop::{Stop, Stopped};
-use netcert_roads::turns::{Reach, TurnFacts, TurnParams, corridors_of};
+use netcert_roads::turns::{LengthClass, TurnFacts, TurnParams, corridors_of};
 
 /// The results of a stroke's edges, if the strip of the settings' policy were nowhere narrower than `width_m` on the stroke. `stroke` is an index
 /// into [`Network::strokes`]. Edges without a corridor are left out.
@@ -49,7 +49,7 @@ pub fn turn_with_kerb(
 ) -> Result<Option<SpanResult>, Stopped> {
     stop.check()?;
     let params = TurnParams { own_kerb_m: Some(radius_m), ..settings.turn_params() };
-    let Some(reach) = Reach::of(&model.vehicle) else { return Ok(None) };
+    let Some(reach) = LengthClass::of(&model.vehicle) else { return Ok(None) };
     let Ok(made) = corridors_of(network, turn, settings.policy, &params, reach) else { return Ok(None) };
     stop.check()?;
     let best = best_of(&made, &[model], &settings.stet).pop().flatten();

@@ -22,7 +22,7 @@ use crate::stet::{Model, SpanResult};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
-use netcert_roads::turns::{Planned, Reach, StrokeLine, TurnFacts, turn_on};
+use netcert_roads::turns::{LengthClass, Planned, StrokeLine, TurnFacts, turn_on};
 
 /// Turns per batch.
 const BATCH: usize = 512;
@@ -338,9 +338,9 @@ fn plan_as_on(
         None => Err(UnknownReason::Geometry),
     };
     let mut better = Vec::new();
-    for reach in [Reach::Short, Reach::Long] {
+    for reach in [LengthClass::Short, LengthClass::Long] {
         let lacking =
-            |v: &usize| lacks_room(&made.certificates[*v]) && Reach::of(&job.models[*v].vehicle) == Some(reach);
+            |v: &usize| lacks_room(&made.certificates[*v]) && LengthClass::of(&job.models[*v].vehicle) == Some(reach);
         let lacking: Vec<usize> = (0..job.models.len()).filter(lacking).collect();
         let over = (turn.movement, &turn.through[..]);
         if lacking.is_empty() {
@@ -400,9 +400,9 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         .collect();
     let line = |edge: u32| line_of(lines, strokes, edge);
     let mut laid_out = false;
-    for reach in [Reach::Short, Reach::Long] {
+    for reach in [LengthClass::Short, LengthClass::Long] {
         let live: Vec<usize> = (0..job.models.len())
-            .filter(|&v| given(job, turn, v).is_none() && Reach::of(&job.models[v].vehicle) == Some(reach))
+            .filter(|&v| given(job, turn, v).is_none() && LengthClass::of(&job.models[v].vehicle) == Some(reach))
             .collect();
         if live.is_empty() {
             continue;

@@ -3,7 +3,7 @@
 use crate::cell::{Cell, Corner};
 use crate::interval::Interval;
 use crate::motion::Pose;
-use crate::swept::{ABOUT, Swept};
+use crate::swept::{ABOUT, SweptVehicle};
 
 /// Error bound of the road's own evaluation, metres: quadrature (1e-7) and rounding.
 const ROAD_M: f64 = 2e-7;
@@ -20,7 +20,7 @@ const LEAST_INSIDE: f64 = 0.1;
 /// Relative rounding of a half-width between two stations.
 const WIDTH_ROUNDING: f64 = 1e-14;
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// How far the inside of a cell may lie below its corners: in time, and along the body with the road's dips.
     pub(crate) fn allowances(&self, cell: &Cell, all: &[Corner; 4], range: [f64; 2]) -> (f64, f64) {
         let bend = all.iter().map(|c| c.bend).fold(0.0, f64::max) * BETWEEN + BEND_ROUNDING;

@@ -1,10 +1,10 @@
 //! Cells and their corners: the leeway of a body point at its foot (proof, section 7).
 
 use crate::UP;
-use crate::curve::Place;
+use crate::curve::CurvePoint;
 use crate::feet::{Hint, beside_m, foot_from, point};
 use crate::motion::Pose;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 
 /// Nothing is bounded where a body stands more askew to the road than of this cosine, or where normals crowd more than this.
 const LEAST_COSINE: f64 = 0.2;
@@ -18,7 +18,7 @@ pub(crate) struct Corner {
     /// Foot, in stations of the road.
     pub(crate) s: f64,
     /// The road there.
-    pub(crate) place: Place,
+    pub(crate) place: CurvePoint,
     /// Nominal leeway, metres: half-width less lateral place.
     pub(crate) clear: f64,
     /// Most that the tubes take away, metres.
@@ -50,7 +50,7 @@ pub(crate) struct Cell {
     pub(crate) halvings: u32,
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// A body point on the side of a cell. `None` without a foot near the guess, or without a bound.
     pub(crate) fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: Hint) -> Option<Corner> {
         let link = &self.chain.links[cell.unit];
@@ -97,7 +97,7 @@ impl Swept<'_> {
         cell: &Cell,
         [a, b]: [f64; 2],
         [sin, cos]: [f64; 2],
-        (s, place, lateral): (f64, &Place, f64),
+        (s, place, lateral): (f64, &CurvePoint, f64),
         slope: f64,
     ) -> f64 {
         let l = self.chain.links[cell.unit].l;

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::claim::{Weight, asked_alone, weight};
 use crate::subject::Subject;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::targets::{Shortfall, Targets};
 
 /// A body that lacks as much room as it is wide is wholly outside of the road, metres. Entries of columns promise nothing there.
@@ -29,7 +29,7 @@ impl Subject<'_> {
             };
             return [wrong(&targets[0]), wrong(&targets[1])];
         };
-        let mut swept = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
+        let mut swept = SweptVehicle::new(self.chain, &self.road, motion, self.chain.tolerance_m);
         let shortfalls = swept.refute(&Targets(targets.clone()));
         [0, 1].map(|side| {
             let weighed = |at: &Shortfall| {

@@ -8,7 +8,7 @@ const GAUSS: [(f64, f64); 3] =
 
 /// A place on the centreline.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct CurvePoint {
     /// Metres from the corridor's first station.
     pub(crate) c: Point,
     /// Unit tangent.
@@ -18,9 +18,9 @@ pub(crate) struct Place {
 }
 
 /// The centreline `x` metres after a station. The curvature goes from `k0` to `k1` within the spacing.
-pub(crate) fn curve(from: Place, [k0, k1]: [f64; 2], spacing: f64, x: f64) -> Place {
+pub(crate) fn curve(from: CurvePoint, [k0, k1]: [f64; 2], spacing: f64, x: f64) -> CurvePoint {
     if k0 == 0.0 && k1 == 0.0 {
-        return Place { c: [from.c[0] + x * from.t[0], from.c[1] + x * from.t[1]], t: from.t, curvature: 0.0 };
+        return CurvePoint { c: [from.c[0] + x * from.t[0], from.c[1] + x * from.t[1]], t: from.t, curvature: 0.0 };
     }
     let rate = (k1 - k0) / spacing;
     let (mut ahead, mut aside) = (0.0, 0.0);
@@ -31,7 +31,7 @@ pub(crate) fn curve(from: Place, [k0, k1]: [f64; 2], spacing: f64, x: f64) -> Pl
     }
     let (sin, cos) = small_sin_cos(x * (k0 + 0.5 * rate * x));
     let t = from.t;
-    Place {
+    CurvePoint {
         c: [from.c[0] + ahead * t[0] - aside * t[1], from.c[1] + ahead * t[1] + aside * t[0]],
         t: [cos * t[0] - sin * t[1], cos * t[1] + sin * t[0]],
         curvature: k0 + rate * x,

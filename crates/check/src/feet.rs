@@ -1,6 +1,6 @@
 //! Feet: where the normal of the road through a point meets the road.
 
-use crate::curve::Place;
+use crate::curve::CurvePoint;
 use crate::motion::Pose;
 use crate::road::Road;
 use crate::vector::along;
@@ -23,7 +23,7 @@ pub(crate) struct Hint {
     /// Stations of the road. NaN: nowhere yet.
     pub(crate) s: f64,
     /// The road there, if it is known.
-    pub(crate) place: Option<Place>,
+    pub(crate) place: Option<CurvePoint>,
 }
 
 impl Hint {
@@ -35,12 +35,12 @@ impl Hint {
 }
 
 /// The foot of a point by Newton's method, with its place and the point's lateral place.
-pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, CurvePoint, f64)> {
     foot_from(road, x, Hint::at(guess))
 }
 
 /// As [`foot`], from a place that may be known.
-pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, Place, f64)> {
+pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, CurvePoint, f64)> {
     let (mut s, mut known) = (guess.s, guess.place);
     for round in 0..ROUNDS {
         let place = known.take().unwrap_or_else(|| road.place(s));
@@ -58,7 +58,7 @@ pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, P
 
 /// How much farther a point may be from the road than from a normal that passes beside it in a gap between two
 /// stretches, metres.
-pub(crate) fn beside_m(x: [f64; 2], place: &Place) -> f64 {
+pub(crate) fn beside_m(x: [f64; 2], place: &CurvePoint) -> f64 {
     let r = [x[0] - place.c[0], x[1] - place.c[1]];
     let off = r[0] * place.t[0] + r[1] * place.t[1];
     off * off / ((r[0] * r[0] + r[1] * r[1]).sqrt() + TINY_M)

@@ -1,6 +1,6 @@
 //! Whether the stations of a corridor fit each other.
 
-use crate::curve::{Place, curve};
+use crate::curve::{CurvePoint, curve};
 use netcert_base::corridor::Corridor;
 
 /// Largest deviation of a station from the curve that leads to it, metres and radians, per metre of spacing. In a file
@@ -78,8 +78,11 @@ fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     if off > HEADING_TOLERANCE_RAD * c.spacing_m {
         return wrong(format!("its heading differs by {off:.4} rad from what the curvatures give"));
     }
-    let place =
-        Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
+    let place = CurvePoint {
+        c: [c.x[before], c.y[before]],
+        t: [c.heading[before].cos(), c.heading[before].sin()],
+        curvature: 0.0,
+    };
     let at = curve(place, [c.curvature[before], c.curvature[k]], c.spacing_m, c.spacing_m).c;
     let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
     if off > PLACE_TOLERANCE_M * c.spacing_m {

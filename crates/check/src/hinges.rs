@@ -1,9 +1,9 @@
 //! How far every hinge and the steering lock stay from their limits (proof, section 10).
 
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::tubes::Tube;
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians. The adjoint is used
     /// if the filter's margin is below `least`. −∞ without bounds.
     pub(crate) fn hinge_margin(&mut self, step: usize, unit: usize, least: f64) -> f64 {

@@ -11,7 +11,7 @@ use crate::cell::{Cell, Corner};
 use crate::feet::{Hint, point};
 use crate::gains::Knots;
 use crate::motion::Pose;
-use crate::swept::{ABOUT, KNOT_M, Swept};
+use crate::swept::{ABOUT, KNOT_M, SweptVehicle};
 use crate::targets::{Shortfalls, Targets};
 use netcert_base::watch;
 
@@ -52,7 +52,7 @@ enum Fate {
     Short(f64, (usize, usize)),
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// Decides a cell by exact corners.
     pub(crate) fn cell(&mut self, cell: &Cell, hints: [Hint; 2], targets: &Targets, found: &mut Shortfalls) {
         watch::poll();

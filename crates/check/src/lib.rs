@@ -82,7 +82,7 @@ pub use claim::{Finding, Outcome, SpanClaim, Weight, finding};
 pub use fit::RoadError;
 pub use interval::Interval;
 pub use subject::Subject;
-pub use swept::Swept;
+pub use swept::SweptVehicle;
 
 /// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
 /// into different steps. `claim` applies the tolerance, and nothing else does.

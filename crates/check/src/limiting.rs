@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::STEPS;
 use crate::claim::{Finding, SpanClaim, Weight, finding};
 use crate::subject::{FARTHEST, Subject};
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::targets::Targets;
 
 /// A body that lacks this much room folds up, or leaves the road for another leg of it, metres. The two programs follow it for different
@@ -34,12 +34,12 @@ impl Subject<'_> {
     /// Checks the limiting places of some claims. The filter's bounds decide, because the prover may have used the filter.
     pub(crate) fn limiting_places(
         &self,
-        swept: &mut Swept<'_>,
+        swept: &mut SweptVehicle<'_>,
         claims: &[SpanClaim],
         own: &[usize],
         findings: &mut [Vec<Finding>],
     ) {
-        let mut check = |filtered: &mut Swept<'_>| {
+        let mut check = |filtered: &mut SweptVehicle<'_>| {
             for &i in own {
                 findings[i].extend(self.limiting(filtered, &claims[i]));
             }
@@ -55,7 +55,7 @@ impl Subject<'_> {
 
     /// Checks the limiting place: it must be on the span and have hardly more room than the RSC. More room there is a remark, since the RSC
     /// is then too low by so much.
-    fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
+    fn limiting(&self, filtered: &mut SweptVehicle<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -ASTRAY_M)?);
         // How far a body is outside of an area is not measured here (`plane`). Far inside, the prover measures roughly. Between γ = 1 and
         // γ_min it takes chords, which may lie far below the room at that γ.

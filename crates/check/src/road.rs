@@ -4,7 +4,7 @@
 //! continues straight (proof, section 8). A corridor whose stations do not fit each other is refused.
 
 use crate::areas::Areas;
-use crate::curve::{Place, curve};
+use crate::curve::{CurvePoint, curve};
 use crate::fit::{RoadError, misfits};
 use crate::vector::length;
 use netcert_base::corridor::Corridor;
@@ -45,7 +45,7 @@ pub(crate) struct Road {
     /// Stations before the corridor's first, and stations of the corridor itself.
     pub(crate) lead: usize,
     pub(crate) count: usize,
-    pub(crate) stations: Vec<Place>,
+    pub(crate) stations: Vec<CurvePoint>,
     /// Curvature at the start and the end of the stretch after each station.
     bends: Vec<[f64; 2]>,
     /// Error bound of the curve after each station against the next station, metres. Sampling a smooth line leaves such
@@ -72,7 +72,7 @@ impl Road {
         let (n, spacing) = (corridor.len(), corridor.spacing_m);
         let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);
         let origin = [corridor.x[0], corridor.y[0]];
-        let own = |k: usize| Place {
+        let own = |k: usize| CurvePoint {
             c: [corridor.x[k] - origin[0], corridor.y[k] - origin[1]],
             t: [corridor.heading[k].cos(), corridor.heading[k].sin()],
             curvature: corridor.curvature[k],
@@ -98,7 +98,7 @@ impl Road {
             let inside = k >= lead && inner + 1 < n;
             let bend = if inside { [corridor.curvature[inner], corridor.curvature[inner + 1]] } else { [0.0; 2] };
             let [slack, jump] = if inside { misfits[inner] } else { [0.0; 2] };
-            road.stations.push(Place { c, ..place });
+            road.stations.push(CurvePoint { c, ..place });
             road.bends.push(bend);
             road.slack.push(slack);
             road.jumps.push(jump);
@@ -141,7 +141,7 @@ impl Road {
     }
 
     /// The centreline at `s` (in stations, extensions included).
-    pub(crate) fn place(&self, s: f64) -> Place {
+    pub(crate) fn place(&self, s: f64) -> CurvePoint {
         let (k, x) = self.split(s);
         curve(self.stations[k], self.bends[k], self.spacing, x)
     }
@@ -150,7 +150,7 @@ impl Road {
     /// cubic over the whole stretch. Otherwise the course would jump at the station.
     pub(crate) fn course(&self, s: f64) -> ([f64; 2], [f64; 2]) {
         let (k, x) = self.split(s);
-        let Place { c, t, .. } = curve(self.stations[k], self.bends[k], self.spacing, x);
+        let CurvePoint { c, t, .. } = curve(self.stations[k], self.bends[k], self.spacing, x);
         let Some(next) = self.stations.get(k + 1) else { return (c, t) };
         let end = curve(self.stations[k], self.bends[k], self.spacing, self.spacing);
         let turn = end.t[0] * next.t[1] - end.t[1] * next.t[0];

@@ -4,17 +4,17 @@ use std::ops::Range;
 
 use crate::STEPS;
 use crate::cell::Cell;
-use crate::coarse::{Slab, Spot};
+use crate::coarse::{LocalPoint, Slab};
 use crate::feet::Hint;
 use crate::leeway::CLOSE_M;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::targets::{Shortfall, Shortfalls, Targets};
 use netcert_base::watch;
 
 /// Most halvings of a body for coarse bounds.
 const COARSE_HALVINGS: u32 = 4;
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// All places where the bound is below the claim: the worst one of each stretch and side. In areas half-widths mean
     /// nothing, so their steps are left out.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
@@ -35,15 +35,15 @@ impl Swept<'_> {
         let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
             return found;
         };
-        // The spots of all sides' ends when a slab begins.
-        let mut spots = vec![[None; 2]; self.chain.links.len() * 2];
+        // The local points of all sides' ends when a slab begins.
+        let mut locals = vec![[None; 2]; self.chain.links.len() * 2];
         let all = self.steps(first..last + 1);
         for start in all.clone().step_by(STEPS) {
             watch::poll();
             let steps = start..(start + STEPS).min(all.end);
             if steps.clone().any(|step| self.road.areas.decides(step)) {
                 // In areas feet move on unseen.
-                spots.fill([None; 2]);
+                locals.fill([None; 2]);
                 for step in steps.filter(|&step| !self.road.areas.decides(step)) {
                     for (unit, side) in units.clone().flat_map(|unit| [(unit, 0), (unit, 1)]) {
                         self.cell(&self.whole(unit, side, step), [Hint::NONE; 2], targets, &mut found);
@@ -53,10 +53,11 @@ impl Swept<'_> {
             }
             for (unit, side) in units.clone().flat_map(|unit| [(unit, 0), (unit, 1)]) {
                 let Cell { a, .. } = self.whole(unit, side, start);
-                let before: [Option<Spot>; 2] = spots[unit * 2 + side];
-                let before = [0, 1].map(|k| before[k].or_else(|| self.spot(start, unit, side, a[k], None)));
-                let after = [0, 1].map(|k| self.spot(steps.end, unit, side, a[k], before[k].map(|spot| spot.station)));
-                spots[unit * 2 + side] = after;
+                let before: [Option<LocalPoint>; 2] = locals[unit * 2 + side];
+                let before = [0, 1].map(|k| before[k].or_else(|| self.local_point(start, unit, side, a[k], None)));
+                let after =
+                    [0, 1].map(|k| self.local_point(steps.end, unit, side, a[k], before[k].map(|local| local.station)));
+                locals[unit * 2 + side] = after;
                 let slab = Slab { unit, side, steps: steps.clone(), a, halvings: 0 };
                 self.decide(&slab, [before, after], targets, &mut found);
             }
@@ -74,11 +75,11 @@ impl Swept<'_> {
     }
 
     /// Decides a slab by its coarse bound, or those of its parts. What remains is decided by cells.
-    fn decide(&mut self, slab: &Slab, spots: [[Option<Spot>; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
+    fn decide(&mut self, slab: &Slab, locals: [[Option<LocalPoint>; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
         let mut known = None;
-        if let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = spots {
+        if let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = locals {
             let corners = [[c00, c01], [c10, c11]];
-            let outside = corners.as_flattened().iter().filter(|spot| self.outside(spot)).count();
+            let outside = corners.as_flattened().iter().filter(|local| self.outside(local)).count();
             if outside == 4 {
                 return;
             }
@@ -101,13 +102,13 @@ impl Swept<'_> {
             known = Some(corners);
         }
         if slab.steps.len() > 1 {
-            let mut before = spots[0];
+            let mut before = locals[0];
             for step in slab.steps.clone() {
-                let from = before.map(|spot| spot.map(|spot| spot.station));
+                let from = before.map(|local| local.map(|local| local.station));
                 let after = if step + 1 == slab.steps.end {
-                    spots[1]
+                    locals[1]
                 } else {
-                    [0, 1].map(|k| self.spot(step + 1, slab.unit, slab.side, slab.a[k], from[k]))
+                    [0, 1].map(|k| self.local_point(step + 1, slab.unit, slab.side, slab.a[k], from[k]))
                 };
                 self.decide(&Slab { steps: step..step + 1, ..*slab }, [before, after], targets, found);
                 before = after;
@@ -115,17 +116,17 @@ impl Swept<'_> {
             return;
         }
         let hints =
-            known.map_or([Hint::NONE; 2], |[start, _]| start.map(|spot| Hint::at(spot.rough(self.road.spacing))));
+            known.map_or([Hint::NONE; 2], |[start, _]| start.map(|local| Hint::at(local.rough(self.road.spacing))));
         let Slab { unit, side, a, halvings, .. } = *slab;
         self.cell(&Cell { unit, side, step: slab.steps.start, t: [0.0, 1.0], a, halvings }, hints, targets, found);
     }
 
     /// Decides both halves of a slab's body.
-    fn halve(&mut self, slab: &Slab, corners: &[[Spot; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
+    fn halve(&mut self, slab: &Slab, corners: &[[LocalPoint; 2]; 2], targets: &Targets, found: &mut Shortfalls) {
         let middle = f64::midpoint(slab.a[0], slab.a[1]);
-        let at = |node: usize, ends: &[Spot; 2]| {
+        let at = |node: usize, ends: &[LocalPoint; 2]| {
             let from = usize::midpoint(ends[0].station, ends[1].station);
-            self.spot(node, slab.unit, slab.side, middle, Some(from))
+            self.local_point(node, slab.unit, slab.side, middle, Some(from))
         };
         let middles = [at(slab.steps.start, &corners[0]), at(slab.steps.end, &corners[1])];
         let half = |a: [f64; 2]| Slab { steps: slab.steps.clone(), a, halvings: slab.halvings + 1, ..*slab };

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::adjoint::{self, Output};
 use crate::gains::Knots;
-use crate::swept::{HISTORY_LENGTHS, KNOT_M, Swept};
+use crate::swept::{HISTORY_LENGTHS, KNOT_M, SweptVehicle};
 
 /// Number of outputs that one run of the adjoint carries.
 const ABREAST: usize = 4;
@@ -13,7 +13,7 @@ const WORTH_M: f64 = 2e-4;
 /// For the second order of later steps it takes this much.
 const TIGHTEN_M: f64 = 5e-3;
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// Whether the adjoint is allowed and may improve on the filter.
     pub(crate) fn worth(&self, step: usize, unit: usize) -> bool {
         !self.filter.forbids_adjoint()

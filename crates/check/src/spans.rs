@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::claim::{Finding, SpanClaim, TOLERANCE_RAD, Weight, asked, finding, rsc_weight, weight};
 use crate::plane::Cramped;
 use crate::subject::Subject;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::targets::{Shortfall, Targets};
 use crate::{STEPS, TOLERANCE_M};
 
@@ -24,7 +24,7 @@ impl Subject<'_> {
         tolerances.sort_by(f64::total_cmp);
         tolerances.dedup();
         let Some(&most) = tolerances.last() else { return findings };
-        let mut whole = Swept::new(self.chain, &self.road, motion, most);
+        let mut whole = SweptVehicle::new(self.chain, &self.road, motion, most);
         for tolerance_m in tolerances {
             let own: Vec<usize> = (0..claims.len()).filter(|&i| tolerance(&claims[i]) == tolerance_m).collect();
             let mut part = (tolerance_m < most).then(|| {
@@ -44,7 +44,13 @@ impl Subject<'_> {
     }
 
     /// Checks the claims of these numbers, which are made at one tolerance.
-    fn check_some(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+    fn check_some(
+        &self,
+        swept: &mut SweptVehicle<'_>,
+        claims: &[SpanClaim],
+        own: &[usize],
+        findings: &mut [Vec<Finding>],
+    ) {
         self.limiting_places(swept, claims, own, findings);
         self.leeway(swept, claims, own, findings);
         self.room(swept, claims, own, findings);
@@ -65,14 +71,14 @@ impl Subject<'_> {
 
     /// The last station that does not fit its neighbours and that the steer axle passed so shortly before a claimed span that the units have
     /// not settled since.
-    fn torn_before(&self, swept: &Swept<'_>, claim: &SpanClaim) -> Option<usize> {
+    fn torn_before(&self, swept: &SweptVehicle<'_>, claim: &SpanClaim) -> Option<usize> {
         claim.rsc_m?;
         let first = swept.steps(self.stretches(&claim.stations)).start / STEPS;
         let fading = (self.chain.fading_m / self.road.spacing) as usize;
         self.road.torn(first.saturating_sub(fading)..first)
     }
 
-    fn leeway(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+    fn leeway(&self, swept: &mut SweptVehicle<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
         let stretches = self.road.count - 1;
         let mut side = vec![f64::NEG_INFINITY; stretches];
         for &i in own {
@@ -103,7 +109,7 @@ impl Subject<'_> {
     }
 
     /// Checks the room in areas, in all steps in which any point of the vehicle may be on a span.
-    fn room(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+    fn room(&self, swept: &mut SweptVehicle<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
         let claimed = |&i: &usize| Some((i, asked(claims[i].rsc_m?)));
         let mut own: Vec<(usize, f64)> = own.iter().filter_map(claimed).collect();
         // A greater claim that is proved settles the lesser ones in the steps that they share.
@@ -148,7 +154,12 @@ impl Subject<'_> {
     }
 
     /// Why a hinge margin is not proved while any point of the vehicle is on the span.
-    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, Weight)> {
+    fn hinges(
+        &self,
+        swept: &mut SweptVehicle<'_>,
+        stations: &Range<usize>,
+        margin_rad: f64,
+    ) -> Option<(String, Weight)> {
         let stretches = self.stretches(stations);
         let least = margin_rad - TOLERANCE_RAD;
         let steps = swept.steps(stretches);

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use crate::STEPS;
 use crate::chain::Chain;
-use crate::curve::Place;
+use crate::curve::CurvePoint;
 use crate::feet::foot;
 use crate::fit::RoadError;
 use crate::motion::Motion;
 use crate::road::Road;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use netcert_base::corridor::Corridor;
 
 /// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
@@ -74,23 +74,23 @@ impl<'a> Subject<'a> {
 
     /// Bound of an axle's deviation when the steer axle is at station `k`. It is the filter's bound if that is at most
     /// `enough`, otherwise the adjoint's.
-    pub fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<f64> {
+    pub fn tube_at(&self, swept: &mut SweptVehicle<'_>, k: usize, unit: usize, enough: f64) -> Option<f64> {
         let step = (self.road.lead + k) * STEPS;
         swept.axle_bound(step.checked_sub(1)?, unit, enough)
     }
 
     /// The vehicle swept at a tolerance, metres.
-    pub fn swept(&self, tolerance_m: f64) -> Option<Swept<'_>> {
-        Some(Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    pub fn swept(&self, tolerance_m: f64) -> Option<SweptVehicle<'_>> {
+        Some(SweptVehicle::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
     }
 
     /// As [`Self::swept`], by the filter alone.
-    pub fn filtered(&self, tolerance_m: f64) -> Option<Swept<'_>> {
-        Some(Swept::filtered(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    pub fn filtered(&self, tolerance_m: f64) -> Option<SweptVehicle<'_>> {
+        Some(SweptVehicle::filtered(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
     }
 
     /// The foot of a point near `guess` (stations of the road), its place, and the point's lateral place.
-    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, CurvePoint, f64)> {
         foot(&self.road, x, guess)
     }
 

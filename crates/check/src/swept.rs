@@ -26,7 +26,7 @@ const LAG: f64 = 1.05;
 pub(crate) const HISTORY_LENGTHS: f64 = 1.5;
 
 /// The vehicle on the road along its plan, with tubes at one tolerance.
-pub struct Swept<'a> {
+pub struct SweptVehicle<'a> {
     pub(crate) chain: &'a Chain,
     pub(crate) road: &'a Road,
     pub(crate) motion: &'a Motion,
@@ -52,7 +52,7 @@ pub(crate) struct Known {
     pub(crate) poses: HashMap<(usize, usize), Option<[f64; 2]>>,
 }
 
-impl<'a> Swept<'a> {
+impl<'a> SweptVehicle<'a> {
     pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
         Self::of(chain, road, motion, Filter::new(chain, road.spacing, tolerance_m), motion.steps())
     }

@@ -198,7 +198,7 @@ pub struct Decision {
 
 /// A place at which one measurement of a quantity counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Spot {
+enum MeasuredObject {
     Edge(i64),
     Corner(i64, Option<Pieces>),
     Area(i64),
@@ -207,13 +207,13 @@ enum Spot {
 /// Decides which entries count, and marks them.
 pub fn decide(network: &Network, register: &mut [Entry]) -> Decision {
     let edges = Edges::of(network, register.iter().flat_map(Entry::targets));
-    let mut rivals: BTreeMap<(Quantity, Spot), Vec<(usize, usize)>> = BTreeMap::new();
+    let mut rivals: BTreeMap<(Quantity, MeasuredObject), Vec<(usize, usize)>> = BTreeMap::new();
     for (i, entry) in register.iter_mut().enumerate() {
         let unused = entry.unused().is_some();
         for (k, (target, counts)) in entry.places.iter_mut().enumerate() {
             *counts = false;
-            if let (false, Some(spot)) = (unused, edges.spot(*target)) {
-                rivals.entry((entry.row.quantity, spot)).or_default().push((i, k));
+            if let (false, Some(object)) = (unused, edges.object(*target)) {
+                rivals.entry((entry.row.quantity, object)).or_default().push((i, k));
             }
         }
     }
@@ -389,20 +389,20 @@ impl<'n> Edges<'n> {
     }
 
     /// `None` if the network does not have the place.
-    fn spot(&self, target: Target) -> Option<Spot> {
+    fn object(&self, target: Target) -> Option<MeasuredObject> {
         match target {
-            Target::Edge(id) => self.of_id(id).map(|edge| Spot::Edge(edge.id)),
-            Target::Corner { node, edges: None } => Some(Spot::Corner(node, None)),
+            Target::Edge(id) => self.of_id(id).map(|edge| MeasuredObject::Edge(edge.id)),
+            Target::Corner { node, edges: None } => Some(MeasuredObject::Corner(node, None)),
             Target::Corner { node, edges: Some([a, b]) } => {
-                Some(Spot::Corner(node, Some(pieces([self.of_id(a)?, self.of_id(b)?]))))
+                Some(MeasuredObject::Corner(node, Some(pieces([self.of_id(a)?, self.of_id(b)?]))))
             }
-            Target::Area(node) => Some(Spot::Area(node)),
+            Target::Area(node) => Some(MeasuredObject::Area(node)),
         }
     }
 
     /// Whether the network has the place.
     pub fn has(&self, target: Target) -> bool {
-        self.spot(target).is_some()
+        self.object(target).is_some()
     }
 
     /// The site of measurements that count: at most one for each place and quantity.

@@ -11,7 +11,7 @@ use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
+use crate::turns::{KerbSource, Kerbs, LengthClass, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// Kerb radii are tried in these steps, metres, up to [`MOST_KERB_M`].
@@ -53,7 +53,7 @@ pub fn explain_turn(
     stop.check()?;
     let roads = [facts.movement.from, facts.movement.to]
         .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| network.title(edge)));
-    let made = match Reach::of(&model.vehicle) {
+    let made = match LengthClass::of(&model.vehicle) {
         Some(reach) => corridors_of(network, facts, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
     };
@@ -165,7 +165,7 @@ fn kerb(
 
 /// Whether the turn is safe for a vehicle, on the best of its own paths.
 fn is_safe(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings, params: &TurnParams) -> bool {
-    let Some(reach) = Reach::of(&model.vehicle) else { return false };
+    let Some(reach) = LengthClass::of(&model.vehicle) else { return false };
     let made = corridors_of(network, facts, settings.policy, params, reach).ok();
     let best = made.and_then(|made| best_of(&made, &[model], &settings.stet).pop().flatten());
     best.is_some_and(|(_, result)| result.safe())

@@ -313,7 +313,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::claim::Place;
+    use crate::claim::BodyPoint;
     use crate::crossing::Crossing;
     use crate::fleet;
     use crate::planner::drivable;
@@ -332,7 +332,7 @@ mod tests {
 
     fn claim(corridor: &Corridor, rsc_m: f64) -> Claim {
         let plan = corridor.x.iter().zip(&corridor.y).map(|(x, y)| [*x, *y]).collect();
-        let limiting = Place { foot_m: 0.0, unit: 0, side: 1.0, ahead_m: 0.0 };
+        let limiting = BodyPoint { foot_m: 0.0, unit: 0, side: 1.0, ahead_m: 0.0 };
         Claim { rsc_m, shrink: 1.0, hinge_margin_rad: 0.0, limiting, plan }
     }
 

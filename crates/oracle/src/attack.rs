@@ -9,7 +9,7 @@ use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
 use crate::adversary::{Bounds, Target, hinge_kernel, kernel};
-use crate::claim::{Claim, Place};
+use crate::claim::{BodyPoint, Claim};
 use crate::draw::Draw;
 use crate::path::{Path, along, direction, dot, left_of, wrapped};
 use crate::road::Road;
@@ -93,13 +93,13 @@ impl<'a> Attack<'a> {
     /// unmatched random ones.
     pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> Outcome {
         let worst = self.outcome.least;
-        let worst = Place { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
+        let worst = BodyPoint { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
         self.outcome.first_order_m = self.attack(claim.limiting, true, "limiting place");
         self.attack(claim.limiting, false, "limiting place, within the course tolerance");
         self.attack(worst, true, "undisturbed worst");
         for k in 0..others {
-            let place = self.random_place(draw);
-            self.attack(place, k % 2 == 0, "random place");
+            let point = self.random_point(draw);
+            self.attack(point, k % 2 == 0, "random place");
         }
         for _ in 0..others {
             self.attack_hinges(draw);
@@ -140,22 +140,22 @@ impl<'a> Attack<'a> {
         (metres / self.drive.path.spacing_m * self.drive.steps_per_span as f64) as usize
     }
 
-    fn random_place(&self, draw: &mut Draw) -> Place {
+    fn random_point(&self, draw: &mut Draw) -> BodyPoint {
         let unit = draw.below(self.drive.vehicle.units.len());
         let ladder = places(self.drive.vehicle, unit, 1.0);
         let ahead_m =
             if draw.one_in(2) { ladder[draw.below(ladder.len())] } else { ladder[(ladder.len() - 1) * draw.below(2)] };
-        Place { foot_m: draw.between(0.0, self.road.length_m()), unit, side: draw.sign(), ahead_m }
+        BodyPoint { foot_m: draw.between(0.0, self.road.length_m()), unit, side: draw.sign(), ahead_m }
     }
 
     /// Attacks one place twice: linearised about the undisturbed run, then about the attacked run. Returns the
     /// clearance that the first linearisation predicts.
-    fn attack(&mut self, place: Place, fast: bool, by: &'static str) -> f64 {
-        let aside_m = place.side * 0.5 * self.drive.vehicle.units[place.unit].width_m;
-        let (step, clearance_m) = self.step_at(&place, aside_m);
-        let (_, tangent) = self.road.centre(place.foot_m);
-        let push = along([0.0; 2], place.side, left_of(tangent));
-        let target = Target { step, unit: place.unit, ahead_m: place.ahead_m, aside_m, push };
+    fn attack(&mut self, point: BodyPoint, fast: bool, by: &'static str) -> f64 {
+        let aside_m = point.side * 0.5 * self.drive.vehicle.units[point.unit].width_m;
+        let (step, clearance_m) = self.step_at(&point, aside_m);
+        let (_, tangent) = self.road.centre(point.foot_m);
+        let push = along([0.0; 2], point.side, left_of(tangent));
+        let target = Target { step, unit: point.unit, ahead_m: point.ahead_m, aside_m, push };
         let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
         let slope =
             if fast { 2.0 * self.bounds.steer_m / SWING_M } else { self.drive.vehicle.tracking_heading_rad.tan() };
@@ -213,17 +213,17 @@ impl<'a> Attack<'a> {
 
     /// The step of the undisturbed run at which the body point's foot is nearest to the place's, and the clearance
     /// then.
-    fn step_at(&self, place: &Place, aside_m: f64) -> (usize, f64) {
-        let mut guess = place.foot_m;
+    fn step_at(&self, aim: &BodyPoint, aside_m: f64) -> (usize, f64) {
+        let mut guess = aim.foot_m;
         let mut miss = |step: usize| {
             let (guide, headings) = self.nominal.at(step);
-            let point = self.drive.body_point(guide, headings, place.unit, place.ahead_m, aside_m);
+            let point = self.drive.body_point(guide, headings, aim.unit, aim.ahead_m, aside_m);
             let on_path = (step as f64 / self.drive.steps_per_span as f64 + 1.0 - self.drive.path.lead_in as f64)
                 * self.drive.path.spacing_m;
             // The search starts at the steer axle, because a corridor may come back to the same spot.
-            guess = on_path - self.behind(place);
+            guess = on_path - self.behind(aim);
             let at = self.road.locate(point, guess);
-            ((at.foot_m - place.foot_m).abs(), if place.side > 0.0 { at.left_m } else { at.right_m })
+            ((at.foot_m - aim.foot_m).abs(), if aim.side > 0.0 { at.left_m } else { at.right_m })
         };
         let better = |best: (usize, (f64, f64)), step: usize, found: (f64, f64)| {
             if found.0 < best.1.0 { (step, found) } else { best }
@@ -237,10 +237,10 @@ impl<'a> Attack<'a> {
     }
 
     /// Distance of a body point behind the steer axle on the straight, metres.
-    fn behind(&self, place: &Place) -> f64 {
+    fn behind(&self, point: &BodyPoint) -> f64 {
         let units = &self.drive.vehicle.units;
-        let ahead: f64 = units[..place.unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
-        ahead + units[place.unit].coupling_to_axle_m - place.ahead_m
+        let ahead: f64 = units[..point.unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
+        ahead + units[point.unit].coupling_to_axle_m - point.ahead_m
     }
 
     /// Records the least clearance of a run in `range`, and its articulation if `course` was kept.

@@ -8,13 +8,13 @@ pub struct Claim {
     /// γ: the steer axle keeps within ±γ ε.
     pub shrink: f64,
     pub hinge_margin_rad: f64,
-    pub limiting: Place,
+    pub limiting: BodyPoint,
     pub plan: Vec<V2>,
 }
 
 /// A body point, given by the station of its foot.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub struct BodyPoint {
     pub foot_m: f64,
     pub unit: usize,
     /// +1 left, −1 right.

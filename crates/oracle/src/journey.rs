@@ -27,7 +27,7 @@ const LOOKED_AT: usize = 6;
 
 /// A claim about a part of a route: metres from the route's beginning, and what is promised there.
 #[derive(Debug, Clone, Copy)]
-pub struct Part {
+pub struct PartClaim {
     pub from_m: f64,
     pub to_m: f64,
     pub rsc_m: f64,
@@ -62,7 +62,7 @@ impl<'a> Journey<'a> {
 
     /// Attacks the claim about a part. Where half-widths count it is about body points whose feet are on the part. In
     /// areas it is about all bodies while some body is on the part.
-    pub fn attack_part(&mut self, part: &Part, places: usize) -> Found {
+    pub fn attack_part(&mut self, part: &PartClaim, places: usize) -> Found {
         let vehicle = self.areas.attack.drive.vehicle;
         let front_m = vehicle.units[0].front_overhang_m;
         let heads_m = (part.from_m - front_m, part.to_m + vehicle.length_m - front_m);

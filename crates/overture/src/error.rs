@@ -9,7 +9,7 @@ pub struct OvertureError {
     /// The file, or the first of all that were given.
     pub path: PathBuf,
     /// Where in the file.
-    pub place: Place,
+    pub position: FilePosition,
     /// The feature's id, if it is known.
     pub id: Option<String>,
     /// The fault.
@@ -19,7 +19,7 @@ pub struct OvertureError {
 
 /// A place in a file. Numbers count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// The file as a whole.
     File,
     /// A group of rows of a Parquet file.
@@ -90,18 +90,18 @@ pub enum Problem {
 
 impl OvertureError {
     pub(super) fn of_file(path: &Path, problem: impl Into<Problem>) -> Self {
-        Self { path: path.to_owned(), place: Place::File, id: None, problem: problem.into() }
+        Self { path: path.to_owned(), position: FilePosition::File, id: None, problem: problem.into() }
     }
 }
 
 impl fmt::Display for OvertureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.path.display())?;
-        match self.place {
-            Place::File => {}
-            Place::Group(group) => write!(f, "row group {group}: ")?,
-            Place::Row(group, row) => write!(f, "row group {group}, row {row}: ")?,
-            Place::Feature(number) => write!(f, "feature {number}: ")?,
+        match self.position {
+            FilePosition::File => {}
+            FilePosition::Group(group) => write!(f, "row group {group}: ")?,
+            FilePosition::Row(group, row) => write!(f, "row group {group}, row {row}: ")?,
+            FilePosition::Feature(number) => write!(f, "feature {number}: ")?,
         }
         if let Some(id) = &self.id {
             write!(f, "{id}: ")?;

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
-use super::error::{OvertureError, Place, Problem};
+use super::error::{FilePosition, OvertureError, Problem};
 
 /// A feature.
 #[derive(Deserialize)]
@@ -58,14 +58,14 @@ pub(super) fn each(
     let mut json = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
     let done = (&mut walk).deserialize(&mut json).and_then(|()| json.end());
     let (number, failed) = (walk.number, walk.failed);
-    let at = |place, (id, problem)| OvertureError { path: path.to_owned(), place, id, problem };
+    let at = |position, (id, problem)| OvertureError { path: path.to_owned(), position, id, problem };
     match (done, failed) {
-        (_, Some(failed)) => Err(at(Place::Feature(number), failed)),
+        (_, Some(failed)) => Err(at(FilePosition::Feature(number), failed)),
         // The text is JSON, but not of the form of features.
         (Err(error), None) if error.is_data() => {
-            Err(at(Place::Feature(number), (None, Problem::Value(format!("no GeoJSON of features: {error}")))))
+            Err(at(FilePosition::Feature(number), (None, Problem::Value(format!("no GeoJSON of features: {error}")))))
         }
-        (Err(error), None) => Err(at(Place::Feature(number), (None, Problem::Damaged(error.to_string())))),
+        (Err(error), None) => Err(at(FilePosition::Feature(number), (None, Problem::Damaged(error.to_string())))),
         (Ok(()), None) => Ok(()),
     }
 }

@@ -28,7 +28,7 @@ mod turns;
 use std::path::{Path, PathBuf};
 
 pub use account::Account;
-pub use error::{OvertureError, Place, Problem};
+pub use error::{FilePosition, OvertureError, Problem};
 pub use files::{hash, is_source};
 
 use crate::osm::Extract;

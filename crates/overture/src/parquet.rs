@@ -15,7 +15,7 @@ use ::parquet::schema::types::Type;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 
-use super::error::{OvertureError, Place, Problem};
+use super::error::{FilePosition, OvertureError, Problem};
 use super::record;
 use crate::outside;
 
@@ -90,26 +90,27 @@ impl<'p> Table<'p> {
         group: usize,
         make: &impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)>,
     ) -> Result<Vec<T>, OvertureError> {
-        let at = |place: Place, (id, problem): (Option<String>, Problem)| OvertureError {
+        let at = |position: FilePosition, (id, problem): (Option<String>, Problem)| OvertureError {
             path: self.path.to_owned(),
-            place,
+            position,
             id,
             problem,
         };
         // Each group has a file of its own: copies of one would share their place in it.
-        let reader = open(self.path).map_err(|problem| at(Place::Group(group), (None, problem)))?;
-        let rows =
-            guarded(|| reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
+        let reader = open(self.path).map_err(|problem| at(FilePosition::Group(group), (None, problem)))?;
+        let rows = guarded(|| reader.get_row_group(group))
+            .map_err(|problem| at(FilePosition::Group(group), (None, problem)))?;
         let number = usize::try_from(rows.metadata().num_rows()).unwrap_or_default();
         let mut iterator = guarded(|| RowIter::from_row_group(Some(self.projection.clone()), &*rows))
-            .map_err(|problem| at(Place::Group(group), (None, problem)))?;
+            .map_err(|problem| at(FilePosition::Group(group), (None, problem)))?;
         let mut made = Vec::new();
         for row_number in 0..number {
-            let place = Place::Row(group, row_number);
-            let row = guarded(|| iterator.next().transpose()).map_err(|problem| at(place, (None, problem)))?;
+            let position = FilePosition::Row(group, row_number);
+            let row = guarded(|| iterator.next().transpose()).map_err(|problem| at(position, (None, problem)))?;
             let ends = || (None, Problem::Damaged("the rows end too early".to_owned()));
-            let record = record(row.ok_or_else(|| at(place, ends()))?).map_err(|problem| at(place, (None, problem)))?;
-            make(&mut made, record).map_err(|problem| at(place, problem))?;
+            let record =
+                record(row.ok_or_else(|| at(position, ends()))?).map_err(|problem| at(position, (None, problem)))?;
+            make(&mut made, record).map_err(|problem| at(position, problem))?;
         }
         Ok(made)
     }

@@ -10,7 +10,7 @@ use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::network::{Area, Division, Ground, Network, Portion, StrokeOptions};
 use crate::osm::changes::Changes;
-use crate::osm::facts::{Countries, CrossSection, Place, WayFacts, cross_sections};
+use crate::osm::facts::{Countries, CrossSection, Jurisdiction, WayFacts, cross_sections};
 use crate::osm::{Backdrop, Extract, LonLat};
 use crate::reporter::Reporter;
 
@@ -26,8 +26,8 @@ pub(super) enum Portions {
     OfAtMost(u64),
 }
 
-type Places<'c> = Box<dyn Fn(LonLat) -> Place + Sync + 'c>;
-type Sections<'c> = Box<dyn Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
+type Places<'c> = Box<dyn Fn(LonLat) -> Jurisdiction + Sync + 'c>;
+type Sections<'c> = Box<dyn Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
 
 /// The roads of an extract.
 pub(super) struct Roads<'c> {
@@ -42,7 +42,7 @@ impl<'c> Roads<'c> {
     /// The roads of an extract, in portions.
     pub(super) fn new(extract: Extract, countries: &'c Countries, portions: Portions) -> Self {
         let rules = countries.rules();
-        let places: Places<'c> = Box::new(|position| countries.place(position));
+        let places: Places<'c> = Box::new(|position| countries.jurisdiction(position));
         let sections: Sections<'c> =
             Box::new(move |facts, place, ring_radius_m| cross_sections(facts, place, ring_radius_m, rules));
         let ground = Ground::new(extract, places, sections, StrokeOptions::default());

@@ -15,7 +15,7 @@ use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Joint, Opening, Reach, StrokeLine, cut_out_of_route};
+use crate::turns::{Joint, LengthClass, Opening, StrokeLine, cut_out_of_route};
 use crate::verdict::UnknownReason;
 
 /// The greatest spacing of the route's stations, metres, as on strokes. A route with a sharp turn has the turn's spacing.
@@ -198,7 +198,7 @@ struct Between {
     ground: Option<Ground>,
     approach: Joint,
     departure: Joint,
-    reach: Reach,
+    reach: LengthClass,
 }
 
 fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<Sample>, FrameError> {
@@ -303,7 +303,7 @@ impl Leg {
         let strip = strokes.turn_params().strip.max(strokes.settings().policy);
         let metres = |stations: usize| stations as f64 * corridor.spacing_m;
         for (station, sample) in (low..).zip(&mut samples) {
-            let opening = |turn: Option<&Between>, of: &dyn Fn(Reach) -> Opening| {
+            let opening = |turn: Option<&Between>, of: &dyn Fn(LengthClass) -> Opening| {
                 line.half_widths(strip, station, turn.map_or(Opening::NONE, |turn| of(turn.reach)))
             };
             let after_turn = opening(before, &|reach| reach.opening_after(metres(station.saturating_sub(from))));

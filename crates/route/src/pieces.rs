@@ -9,7 +9,7 @@ use super::roads::Roads;
 use crate::corridor::{AreaSpan, Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::settings::Settings;
-use crate::turns::{Joint, Reach, StrokeLine, TurnParams};
+use crate::turns::{Joint, LengthClass, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
 /// One way to drive a turn.
@@ -30,7 +30,7 @@ pub struct TurnPiece {
     /// The junction's area, and the stations of `corridor` at which it counts.
     pub area: Option<AreaSpan>,
     /// How far before and after it the turn's strip counts.
-    pub reach: Reach,
+    pub reach: LengthClass,
 }
 
 /// A source of turns.

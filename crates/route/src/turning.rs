@@ -7,7 +7,7 @@ use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};
-use crate::turns::{Planner, Reach, TurnCorridors, TurnPath, turn_on};
+use crate::turns::{LengthClass, Planner, TurnCorridors, TurnPath, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The usual number of simple paths of a turn.
@@ -85,7 +85,7 @@ impl Turns for MadeTurns {
 
 impl MadeTurns {
     fn made(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Result<TurnCorridors, UnknownReason> {
-        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
+        let reach = LengthClass::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let driven = [movement.from, movement.to].into_iter().chain(arcs.iter().copied());
         let lines: Vec<_> =
             driven.map(|edge| Ok((edge, strokes.line_of(edge)?))).collect::<Result<_, UnknownReason>>()?;
@@ -103,7 +103,7 @@ impl MadeTurns {
 
     fn piece(&self, made: &TurnCorridors, path: TurnPath) -> Result<TurnPiece, UnknownReason> {
         let TurnPath { code, corridor, area, turn, approach, departure, .. } = path;
-        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
+        let reach = LengthClass::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         Ok(TurnPiece { code, frame: made.frame, corridor, turn, approach, departure, area, reach })
     }
 

@@ -4,7 +4,7 @@
 //! wide and a row equally high; north is up. Ways are named by their nodes in order and tagged as in OpenStreetMap.
 
 use netcert::network::{Edge, Network, NetworkAccount, build};
-use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
+use netcert::osm::facts::{self, CrossSection, Jurisdiction, PointFacts, WayFacts};
 use netcert::osm::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
 
 /// Position of the upper left corner of a drawing.
@@ -176,12 +176,12 @@ pub fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
 }
 
 /// The same country everywhere.
-pub fn somewhere(_: LonLat) -> Place {
-    Place { country: *b"DE", left_hand_traffic: false }
+pub fn somewhere(_: LonLat) -> Jurisdiction {
+    Jurisdiction { country: *b"DE", left_hand_traffic: false }
 }
 
 /// No road has a width.
-pub fn no_sections(_: &WayFacts, _: &Place, _: Option<f64>) -> [CrossSection; 2] {
+pub fn no_sections(_: &WayFacts, _: &Jurisdiction, _: Option<f64>) -> [CrossSection; 2] {
     [CrossSection { lane: None, direction: None, carriageway: None }; 2]
 }
 

@@ -4,11 +4,11 @@
 use netcert::account::AccountRow;
 use netcert::certify::{TurnJob, best_of, certify_turns};
 use netcert::network::{Network, build};
-use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
+use netcert::osm::facts::{Countries, Jurisdiction, Policy, cross_sections};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult};
-use netcert::turns::{Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
+use netcert::turns::{Kerbs, LengthClass, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 
 use crate::ascii_map::{AsciiMap, id_of};
@@ -27,7 +27,7 @@ impl Drawn {
     pub fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
-        let place = |_| Place { country: *b"DE", left_hand_traffic };
+        let place = |_| Jurisdiction { country: *b"DE", left_hand_traffic };
         let (network, _) =
             build(map.extract(), &place, &|facts, place, ring| cross_sections(facts, place, ring, rules));
         Self { network, params: TurnParams { kerbs: Kerbs::everywhere(kerb_m), ..TurnParams::default() } }
@@ -62,14 +62,19 @@ impl Drawn {
     }
 
     /// Corridors of a turn (named by three nodes) or of a passage (named by two ends).
-    pub fn corridors(&self, name: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
+    pub fn corridors(
+        &self,
+        name: &str,
+        policy: Policy,
+        length_class: LengthClass,
+    ) -> Result<TurnCorridors, UnknownReason> {
         let turn = if name.len() == 2 { self.passage(name) } else { self.turn(name) };
-        corridors_of(&self.network, &turn, policy, &self.params, reach)
+        corridors_of(&self.network, &turn, policy, &self.params, length_class)
     }
 
     pub fn best(&self, name: &str, policy: Policy, id: &str) -> Option<SpanResult> {
         let vehicle = catalogued(id);
-        let made = self.corridors(name, policy, Reach::of(&vehicle).unwrap()).unwrap();
+        let made = self.corridors(name, policy, LengthClass::of(&vehicle).unwrap()).unwrap();
         let model = Model::new(&vehicle).unwrap();
         best_of(&made, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
     }

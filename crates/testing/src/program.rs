@@ -1,4 +1,4 @@
-//! Runs the built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
+//! Runs the built program in a folder of its own: `folder.netcert("query --vehicle X").succeeds().tells("…")`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use crate::demo::demo;
 
 /// A temporary working folder.
-pub struct Place(TempDir);
+pub struct WorkFolder(TempDir);
 
 /// The result of a run.
 pub struct Answer {
@@ -32,7 +32,7 @@ fn built() -> PathBuf {
     path
 }
 
-impl Place {
+impl WorkFolder {
     pub fn empty() -> Self {
         Self(TempDir::new().unwrap())
     }
@@ -41,9 +41,9 @@ impl Place {
     pub fn with_demo() -> Self {
         static MADE: OnceLock<Vec<u8>> = OnceLock::new();
         let made = MADE.get_or_init(|| {
-            let place = Self::empty();
-            place.netcert("ingest {demo} --vehicle AU-SEMI19 AU-ATRIPLE53").succeeds();
-            place.read("demo.gpkg")
+            let folder = Self::empty();
+            folder.netcert("ingest {demo} --vehicle AU-SEMI19 AU-ATRIPLE53").succeeds();
+            folder.read("demo.gpkg")
         });
         Self::empty().file("demo.gpkg", made)
     }
@@ -54,10 +54,10 @@ impl Place {
         static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
         let of_these = Arc::clone(MADE.lock().unwrap().entry(vehicles.to_owned()).or_default());
         let made = of_these.get_or_init(|| {
-            let place = Self::empty();
+            let folder = Self::empty();
             let line = format!("ingest {{demo}} --db demo.gpkg --vehicle {vehicles} --corridor carriageway");
-            place.netcert(&line).succeeds();
-            place.read("demo.gpkg")
+            folder.netcert(&line).succeeds();
+            folder.read("demo.gpkg")
         });
         Self::empty().file("demo.gpkg", made)
     }
@@ -74,9 +74,9 @@ impl Place {
         let parked = [("parking:both", "lane"), ("parking:both:orientation", "perpendicular")];
         let side = [&[("highway", "residential"), ("width", "6")], &parked[..]].concat();
         let ways = [way(1, &[1, 2, 3], &[("highway", "primary"), ("width", "12")]), way(2, &[2, 4], &side)];
-        let place = Self::empty().file("unknown.osm.pbf", write_extract(&nodes, &ways));
-        place.netcert("ingest unknown.osm.pbf --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
-        place
+        let folder = Self::empty().file("unknown.osm.pbf", write_extract(&nodes, &ways));
+        folder.netcert("ingest unknown.osm.pbf --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
+        folder
     }
 
     pub fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {

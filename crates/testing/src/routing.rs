@@ -76,7 +76,7 @@ impl Region {
     pub fn of(extract: Extract, policy: Policy) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
-        let (network, _) = build(extract, &|position| countries.place(position), &|way, place, ring| {
+        let (network, _) = build(extract, &|position| countries.jurisdiction(position), &|way, place, ring| {
             cross_sections(way, place, ring, rules)
         });
         // Permits need no needs, and on real extracts the search for them takes longer than all certificates.

@@ -9,7 +9,7 @@ use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 use netcert_testing::xml;
 
 const VEHICLE: &str = "AU-SEMI19";
@@ -159,7 +159,7 @@ fn the_shapes_of_an_explanation_are_those_of_the_verb() {
     let turns: Vec<Value> = turns.take(12).flat_map(|turns| turns.as_array().unwrap().clone()).collect();
     ids.extend(turns.iter().step_by(4).map(|turn| turn["turn_id"].as_str().unwrap().to_owned()));
     // The demo region has nothing unknown.
-    let drawn = Server::over(Place::with_unknown_road(), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let drawn = Server::over(WorkFolder::with_unknown_road(), "serve --db demo.gpkg --addr 127.0.0.1:0");
     let unknown = |row: &&EdgeRow| verdict_words(row.certificate.verdict).0 == "unknown";
     let set = QueryOptions::new(VEHICLE, Policy::Carriageway);
     let rows: Vec<EdgeRow> = drawn.place.database().query(&set).unwrap().map(Result::unwrap).collect();

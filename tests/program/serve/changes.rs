@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::http::Server;
 use crate::diff::{VEHICLE, place};
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const LINE: &str = "serve --db new.gpkg --before old.gpkg --addr 127.0.0.1:0";
 
@@ -22,7 +22,7 @@ fn ask(server: &Server, more: &str) -> Value {
 }
 
 /// The rows of `netcert diff` as the server has them, by kind and id.
-fn rows(place: &Place) -> BTreeMap<(String, String), Value> {
+fn rows(place: &WorkFolder) -> BTreeMap<(String, String), Value> {
     let said = place.netcert("diff old.gpkg new.gpkg --format json").succeeds().json();
     let mut rows = BTreeMap::new();
     for row in said["changes"].as_array().unwrap() {

@@ -6,7 +6,7 @@ use netcert::verdict::{UnsafeReason, Verdict};
 use serde_json::{Value, json};
 
 use super::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-ATRIPLE53";
 const SHORT: &str = "AU-SEMI19";
@@ -16,7 +16,7 @@ const CORNER: [&str; 2] = ["126.026942,-30.203315", "126.046615,-30.205563"];
 const ALONG: [&str; 2] = ["126.050430,-30.217983", "126.049200,-30.213800"];
 
 fn wide() -> Server {
-    Server::over(Place::with_wide_demo(VEHICLE), "serve --db demo.gpkg --addr 127.0.0.1:0")
+    Server::over(WorkFolder::with_wide_demo(VEHICLE), "serve --db demo.gpkg --addr 127.0.0.1:0")
 }
 
 fn asked([from, to]: [&str; 2]) -> String {
@@ -154,7 +154,7 @@ fn is_no_certificate(answer: &Value) {
 
 #[test]
 fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let options = QueryOptions::new(VEHICLE, Policy::Carriageway);
     let rows: Vec<_> = place.database().query(&options).unwrap().map(Result::unwrap).collect();
     let server = Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0");
@@ -199,7 +199,7 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
 
 #[test]
 fn a_turn_would_do_with_the_radius_that_it_needs() {
-    let place = Place::with_wide_demo(SHORT);
+    let place = WorkFolder::with_wide_demo(SHORT);
     place.netcert(&format!("certify --db demo.gpkg --vehicle {SHORT} --corridor carriageway --needs all")).succeeds();
     let turns = place.database().query_turns(&TurnQuery::new(SHORT, Policy::Carriageway)).unwrap();
     let server = Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0");

@@ -19,7 +19,7 @@ use netcert::turns::turn_facts;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnknownReason, Verdict};
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 
@@ -44,12 +44,12 @@ impl Turns for Telling {
 }
 
 /// The demo under the carriageway policy, where some corners pass.
-fn wide() -> (Place, Database, Network, Model, Settings) {
+fn wide() -> (WorkFolder, Database, Network, Model, Settings) {
     wide_for(VEHICLE)
 }
 
-fn wide_for(vehicle: &str) -> (Place, Database, Network, Model, Settings) {
-    let place = Place::with_wide_demo(vehicle);
+fn wide_for(vehicle: &str) -> (WorkFolder, Database, Network, Model, Settings) {
+    let place = WorkFolder::with_wide_demo(vehicle);
     let mut database = place.database();
     let network = database.load_network().unwrap();
     let settings = Settings { policy: Policy::Carriageway, ..Settings::default() };

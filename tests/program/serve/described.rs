@@ -4,7 +4,7 @@ use netcert::words::verdict_words;
 use serde_json::{Map, Value};
 
 use super::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 const LONG: &str = "AU-ATRIPLE53";
@@ -88,7 +88,7 @@ fn item_faults(document: &Value, schema: &Value, items: &[Value], at: &str, foun
 fn every_answer_has_the_described_form() {
     let server = Server::demo();
     let document = server.json("/api/openapi.json");
-    let wide = Server::over(Place::with_wide_demo(LONG), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let wide = Server::over(WorkFolder::with_wide_demo(LONG), "serve --db demo.gpkg --addr 127.0.0.1:0");
     let asked: Vec<_> = asked(&server).into_iter().map(|asked| (&server, asked)).collect();
     let under_conditions = asked_under_conditions(&wide).into_iter().map(|asked| (&wide, asked));
     let two = Server::over(crate::diff::place(), "serve --db new.gpkg --before old.gpkg --addr 127.0.0.1:0");

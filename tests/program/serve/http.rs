@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 /// Long enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -20,7 +20,7 @@ pub(crate) struct Server {
     said: Arc<Mutex<String>>,
     listener: Option<JoinHandle<()>>,
     pub(crate) address: SocketAddr,
-    pub(crate) place: Place,
+    pub(crate) place: WorkFolder,
 }
 
 #[derive(Debug)]
@@ -33,10 +33,10 @@ pub(crate) struct Reply {
 impl Server {
     /// Over the demo region.
     pub(crate) fn demo() -> Self {
-        Self::over(Place::with_demo(), "serve --db demo.gpkg --addr 127.0.0.1:0")
+        Self::over(WorkFolder::with_demo(), "serve --db demo.gpkg --addr 127.0.0.1:0")
     }
 
-    pub(crate) fn over(place: Place, line: &str) -> Self {
+    pub(crate) fn over(place: WorkFolder, line: &str) -> Self {
         let mut child =
             place.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
         let mut first = String::new();

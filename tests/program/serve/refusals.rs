@@ -205,7 +205,7 @@ fn every_response_carries_the_security_headers() {
 
 #[test]
 fn other_machines_are_let_in_only_when_asked() {
-    let place = netcert_testing::program::Place::with_demo();
+    let place = netcert_testing::program::WorkFolder::with_demo();
     place.netcert("serve --db demo.gpkg --addr 0.0.0.0:0").fails().tells("--allow-remote");
     place.netcert("serve --db nothing.gpkg --addr 127.0.0.1:0").fails().tells("no such database");
     place.netcert("serve --db demo.gpkg --base-map-attribution me").ends_as_misuse();

@@ -3,13 +3,13 @@
 use serde_json::{Value, json};
 
 use super::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 
 /// Over the demo region, where the whole carriageway counts: there a semi-trailer gets round some corners.
 fn wide() -> Server {
-    let place = Place::with_wide_demo("AU-SEMI19");
+    let place = WorkFolder::with_wide_demo("AU-SEMI19");
     Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0")
 }
 

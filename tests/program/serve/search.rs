@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::http::Server;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 
@@ -96,7 +96,7 @@ fn a_road_is_whole_and_its_summary_is_that_of_its_pieces() {
 
 #[test]
 fn who_stands_beside_no_certified_road_is_told_where_the_nearest_one_is_and_why() {
-    let server = Server::over(Place::with_unknown_road(), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let server = Server::over(WorkFolder::with_unknown_road(), "serve --db demo.gpkg --addr 127.0.0.1:0");
     let asked = format!("/api/route?vehicle={VEHICLE}&from=0.003,0.003&to=0.001,0&conditions=none");
     let problem = server.problem(&asked, 422);
     assert_eq!(problem["parameter"], "from", "{problem}");

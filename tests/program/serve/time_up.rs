@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use netcert::serve::{LaneLimits, Limits, Options, Server};
 
 use super::http::Reply;
-use netcert_testing::program::Place;
+use netcert_testing::program::WorkFolder;
 
 const VEHICLE: &str = "AU-SEMI19";
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -21,7 +21,7 @@ struct Narrow {
 
 impl Narrow {
     /// One piece of slow work at a time, each done within `time`.
-    fn over(place: &Place, time: Duration) -> Self {
+    fn over(place: &WorkFolder, time: Duration) -> Self {
         let slow = LaneLimits { at_a_time: 1, waiting: 8, time };
         let server = Server::bind(Options {
             db: place.path("demo.gpkg"),
@@ -84,7 +84,7 @@ fn short(snap: u32) -> String {
 /// A different `snap` changes no answer here, but makes each request new to the cache.
 #[test]
 fn the_next_is_answered_soon_whoever_is_cut_off_or_goes_away() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let place = WorkFolder::with_wide_demo(VEHICLE);
     let patient = Narrow::over(&place, PATIENCE);
     assert!(!patient.get(&long(100)).json()["routes"].as_array().unwrap().is_empty());
     let begin = Instant::now();

@@ -35,7 +35,7 @@ impl fmt::Display for Fault {
 
 /// A field of a file: vehicle, unit (if the field is a unit's), field name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct FieldPath {
     pub(crate) vehicle: usize,
     pub(crate) unit: Option<usize>,
     pub(crate) field: &'static str,
@@ -52,7 +52,7 @@ const MAX_SOURCE_CHARS: usize = 4000;
 const LENGTH_TOLERANCE_M: f64 = 0.1;
 
 /// All faults of `definitions`, in file order. `line_of` returns the line of a field.
-pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
+pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPath) -> Option<usize>) -> Vec<Fault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
         check.vehicle = index;
@@ -76,7 +76,7 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) 
 }
 
 /// Warnings about vehicles without a fault. A real vehicle may be so, but somebody should look at it.
-pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
+pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPath) -> Option<usize>) -> Vec<Fault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
         check.vehicle = index;
@@ -88,7 +88,7 @@ pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place
 }
 
 struct Check<'a> {
-    line_of: &'a dyn Fn(Place) -> Option<usize>,
+    line_of: &'a dyn Fn(FieldPath) -> Option<usize>,
     vehicle: usize,
     label: String,
     faults: Vec<Fault>,
@@ -96,7 +96,7 @@ struct Check<'a> {
 
 impl Check<'_> {
     fn fault(&mut self, unit: Option<(usize, &Unit)>, field: &'static str, problem: String) {
-        let line = (self.line_of)(Place { vehicle: self.vehicle, unit: unit.map(|(i, _)| i), field });
+        let line = (self.line_of)(FieldPath { vehicle: self.vehicle, unit: unit.map(|(i, _)| i), field });
         let place = match unit {
             Some((i, u)) => format!("{}, unit {} ({}), {field}", self.label, i + 1, shown(&u.name)),
             None => format!("{}, {field}", self.label),
@@ -112,7 +112,7 @@ impl Check<'_> {
             self.fault(None, "id", problem);
         }
         if let Some(first) = earlier.iter().position(|v| v.id == *id) {
-            let line = (self.line_of)(Place { vehicle: first, unit: None, field: "id" });
+            let line = (self.line_of)(FieldPath { vehicle: first, unit: None, field: "id" });
             let at = line.map_or(String::new(), |l| format!(" on line {l}"));
             self.fault(None, "id", format!("the same id is already used{at}; ids are unique in a file"));
         }

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Vehicle;
-use super::check::{Fault, Place, faults, warnings};
+use super::check::{Fault, FieldPath, faults, warnings};
 use super::definition::VehicleDefinition;
 
 #[derive(Deserialize)]
@@ -28,7 +28,7 @@ pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>
         let problem = "no vehicle in the file; it needs at least one [[vehicle]]".to_owned();
         return Err(vec![Fault { line: None, place: String::new(), problem }]);
     }
-    let line_of = |place| Some(line_at(text, offset(&tree, place)?));
+    let line_of = |path| Some(line_at(text, offset(&tree, path)?));
     let faults = faults(&file.vehicle, &line_of);
     if !faults.is_empty() {
         return Err(faults);
@@ -38,13 +38,13 @@ pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>
 }
 
 /// Byte offset of a field's value. If the field is left out, the offset of its unit or vehicle.
-fn offset(tree: &Spanned<DeTable<'_>>, place: Place) -> Option<usize> {
-    let vehicle = tree.get_ref().get("vehicle")?.get_ref().get(place.vehicle)?;
-    let table = match place.unit {
+fn offset(tree: &Spanned<DeTable<'_>>, path: FieldPath) -> Option<usize> {
+    let vehicle = tree.get_ref().get("vehicle")?.get_ref().get(path.vehicle)?;
+    let table = match path.unit {
         Some(unit) => vehicle.get_ref().get("unit")?.get_ref().get(unit)?,
         None => vehicle,
     };
-    let field: Option<&Spanned<DeValue<'_>>> = table.get_ref().get(place.field);
+    let field: Option<&Spanned<DeValue<'_>>> = table.get_ref().get(path.field);
     Some(field.unwrap_or(table).span().start)
 }
 

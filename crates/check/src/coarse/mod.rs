@@ -10,7 +10,7 @@ use crate::UP;
 use crate::allowance::{BEND_ROUNDING, BETWEEN, JUMPS_PART, SIN_SPARE};
 use crate::feet::point;
 use crate::road::{DIP_PART, Section};
-use crate::swept::{ABOUT, Swept};
+use crate::swept::{ABOUT, SweptVehicle};
 use crate::tubes::Tube;
 
 /// A body point is at most this share of a stretch ahead of its station or behind it.
@@ -47,7 +47,7 @@ pub(crate) struct Slab {
 
 /// A body point in the frame of a station.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Spot {
+pub(crate) struct LocalPoint {
     /// Station of the road.
     pub(crate) station: usize,
     /// Metres ahead of the station, and to its left.
@@ -60,7 +60,7 @@ pub(crate) struct Spot {
     gain: f64,
 }
 
-impl Spot {
+impl LocalPoint {
     /// The foot in stations of the road, roughly.
     pub(crate) fn rough(&self, spacing: f64) -> f64 {
         self.station as f64 + self.off / spacing
@@ -77,10 +77,17 @@ pub(crate) struct Coarse {
     pub(crate) stations: [f64; 2],
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// A body point near station `from`. `None` if its foot is not found within a few stations, or belongs to another
     /// leg of the road.
-    pub(crate) fn spot(&self, node: usize, unit: usize, side: usize, a: f64, from: Option<usize>) -> Option<Spot> {
+    pub(crate) fn local_point(
+        &self,
+        node: usize,
+        unit: usize,
+        side: usize,
+        a: f64,
+        from: Option<usize>,
+    ) -> Option<LocalPoint> {
         let link = &self.chain.links[unit];
         let pose = self.motion.pose(node, unit);
         let x = point(pose, a, if side == 0 { link.half_width } else { -link.half_width });
@@ -97,8 +104,8 @@ impl Swept<'_> {
                 let lateral = r[1] * place.t[0] - r[0] * place.t[1];
                 let sin = pose.u[1] * place.t[0] - pose.u[0] * place.t[1];
                 let gain = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m);
-                let spot = Spot { station, off, lateral, sin, a, gain };
-                return (!self.astray(spot.rough(spacing), straight)).then_some(spot);
+                let local = LocalPoint { station, off, lateral, sin, a, gain };
+                return (!self.astray(local.rough(spacing), straight)).then_some(local);
             }
             station = station.saturating_add_signed((off / spacing).round() as isize).min(end);
         }
@@ -106,48 +113,48 @@ impl Swept<'_> {
     }
 
     /// Whether a foot is before the corridor, where the road is straight. No claim reaches so far.
-    pub(crate) fn outside(&self, spot: &Spot) -> bool {
-        spot.rough(self.road.spacing) + BEFORE < self.road.lead as f64
+    pub(crate) fn outside(&self, local: &LocalPoint) -> bool {
+        local.rough(self.road.spacing) + BEFORE < self.road.lead as f64
     }
 
-    /// A lower bound of the leeway in a slab, from its corners. `spots` are those at its start and at its end in time,
+    /// A lower bound of the leeway in a slab, from its corners. `locals` are those at its start and at its end in time,
     /// rear first. `None` where the road bends too much for it.
-    pub(crate) fn coarse(&self, slab: &Slab, spots: &[[Spot; 2]; 2]) -> Option<Coarse> {
-        let all = spots.as_flattened();
-        let first = all.iter().fold(usize::MAX, |least, spot| least.min(spot.station)).checked_sub(1)?;
-        let last = all.iter().fold(0, |most, spot| most.max(spot.station)) + 1;
+    pub(crate) fn coarse(&self, slab: &Slab, locals: &[[LocalPoint; 2]; 2]) -> Option<Coarse> {
+        let all = locals.as_flattened();
+        let first = all.iter().fold(usize::MAX, |least, local| least.min(local.station)).checked_sub(1)?;
+        let last = all.iter().fold(0, |most, local| most.max(local.station)) + 1;
         let road = self.road.section(slab.side, first, last)?;
         let (tube, pace) = (self.greatest_tube(slab)?, self.pace(slab)?);
-        let reach = self.reach(slab, all, &road, &tube, &pace)?;
-        let least = self.lowest_corner(slab, all, &road, &tube, &reach);
-        let feet = all.iter().map(|spot| spot.rough(self.road.spacing));
+        let extent = self.extent(slab, all, &road, &tube, &pace)?;
+        let least = self.lowest_corner(slab, all, &road, &tube, &extent);
+        let feet = all.iter().map(|local| local.rough(self.road.spacing));
         let [from, to] = feet.fold([f64::INFINITY, 0.0], |[from, to], s| [s.min(from), s.max(to)]);
-        let stray = reach.stray / self.road.spacing;
+        let stray = extent.stray / self.road.spacing;
         let [from, to] = [from - stray, to + stray];
-        let body = self.along_body(slab, &road, &tube, &reach, to - from);
-        let time = self.in_time(slab, &road, &pace, &reach);
+        let body = self.along_body(slab, &road, &tube, &extent, to - from);
+        let time = self.in_time(slab, &road, &pace, &extent);
         Some(Coarse { bound: least - body - time, body, stations: [from - ABOUT, to + ABOUT] })
     }
 
     /// How far a slab reaches in the road's frame. `None` where the road bends too much, or a foot may be farther than a
-    /// stretch from where its spot puts it.
-    fn reach(&self, slab: &Slab, all: &[Spot], road: &Section, tube: &Tube, pace: &Pace) -> Option<Reach> {
-        let most = |size: fn(&Spot) -> f64| all.iter().map(size).fold(0.0, f64::max);
+    /// stretch from where its local point puts it.
+    fn extent(&self, slab: &Slab, all: &[LocalPoint], road: &Section, tube: &Tube, pace: &Pace) -> Option<SlabExtent> {
+        let most = |size: fn(&LocalPoint) -> f64| all.iter().map(size).fold(0.0, f64::max);
         let (spacing, link) = (self.road.spacing, &self.chain.links[slab.unit]);
         let front = all[0].a.abs().max(all[1].a.abs());
         let bent = road.bent[0].max(road.bent[1]);
-        let off = most(|spot| spot.off.abs());
+        let off = most(|local| local.off.abs());
         // Within the slab a point is at most half of the way from a corner's time.
         let (arm, length) = (front + link.half_width, all[1].a - all[0].a);
         let turned = 0.5 * pace.travel * (pace.w + 2.0 * bent * (1.0 + arm * pace.w));
         // Within a body the angle is greater than at both ends only where the road bends to both sides.
         let between = road.bent[0].min(road.bent[1]) * length;
-        let sin = most(|spot| spot.sin.abs()) + 2.0 * bent * off + road.jump + turned + between;
+        let sin = most(|local| local.sin.abs()) + 2.0 * bent * off + road.jump + turned + between;
         let drift = 0.5 * pace.travel * (sin + arm * pace.w);
         // From the station to the foot the lateral place changes by at most off²·κ/2/(1 − κ·lateral). That is below off²·κ
         // while κ·lateral is below a half.
         // Within a body it is greater by the sagitta.
-        let lateral = most(|spot| spot.lateral.abs()) + (off * off + SAGITTA * length * length) * bent + drift;
+        let lateral = most(|local| local.lateral.abs()) + (off * off + SAGITTA * length * length) * bent + drift;
         // The square allows for the cosine between a foot and its station.
         let narrow = 1.0 - bent * lateral - (bent * spacing) * (bent * spacing);
         if !(narrow > 1.0 - MOST && sin < MOST && road.jump < MOST_JUMP_RAD) {
@@ -160,13 +167,13 @@ impl Swept<'_> {
         if (off + gap + slide) / narrow > spacing {
             return None;
         }
-        Some(Reach { front, arm, length, bent, sin, lateral, narrow, slide, gap, stray })
+        Some(SlabExtent { front, arm, length, bent, sin, lateral, narrow, slide, gap, stray })
     }
 
     /// The least leeway of a slab's corners, each with what may lie between its station and its foot.
-    fn lowest_corner(&self, slab: &Slab, all: &[Spot], road: &Section, tube: &Tube, reach: &Reach) -> f64 {
+    fn lowest_corner(&self, slab: &Slab, all: &[LocalPoint], road: &Section, tube: &Tube, extent: &SlabExtent) -> f64 {
         let (spacing, link) = (self.road.spacing, &self.chain.links[slab.unit]);
-        let Reach { front, bent, sin, narrow, slide, gap, stray, .. } = *reach;
+        let SlabExtent { front, bent, sin, narrow, slide, gap, stray, .. } = *extent;
         let tan = sin / (1.0 - sin * sin).sqrt();
         let heading = self.chain.gains.units[slab.unit].heading.at(self.tubes.tolerance_m);
         // How much the first-order bound grows per metre of body.
@@ -177,26 +184,26 @@ impl Swept<'_> {
             + link.half_width * tan * rise;
         let sign = if slab.side == 0 { 1.0 } else { -1.0 };
         let mut least = f64::INFINITY;
-        for spot in all {
-            let share = (spot.a / link.l).abs();
-            let dev = spot.gain + (1.0 - spot.a / link.l).abs() * tube.extra + share * tube.extra_coupling;
-            let [w0, w1, w2] = self.road.widths_about(slab.side, spot.station);
+        for local in all {
+            let share = (local.a / link.l).abs();
+            let dev = local.gain + (1.0 - local.a / link.l).abs() * tube.extra + share * tube.extra_coupling;
+            let [w0, w1, w2] = self.road.widths_about(slab.side, local.station);
             let (before, after) = ((w1 - w0) / spacing, (w2 - w1) / spacing);
             let slope = before.abs().max(after.abs());
-            let behind = spot.off < 0.0;
-            let width = w1 + spot.off * if behind { before } else { after } - slope * stray;
-            let way = spot.off.abs() + gap;
+            let behind = local.off < 0.0;
+            let width = w1 + local.off * if behind { before } else { after } - slope * stray;
+            let way = local.off.abs() + gap;
             let aside = 0.5 * way * way * bent / narrow;
             // Behind its station a foot lies on the stretch before, which may meet the station askew.
             let askew = if behind { road.slack + road.jump * way } else { 0.0 };
-            least = least.min(width - sign * spot.lateral - (aside + road.slack + askew + (dev + shared) * UP));
+            least = least.min(width - sign * local.lateral - (aside + road.slack + askew + (dev + shared) * UP));
         }
         least
     }
 
     /// What the body between its ends may lack, as `allowances` of exact corners. Its feet spread over so many stations.
-    fn along_body(&self, slab: &Slab, road: &Section, tube: &Tube, reach: &Reach, spread: f64) -> f64 {
-        let Reach { length, bent, sin, lateral, narrow, .. } = *reach;
+    fn along_body(&self, slab: &Slab, road: &Section, tube: &Tube, extent: &SlabExtent, spread: f64) -> f64 {
+        let SlabExtent { length, bent, sin, lateral, narrow, .. } = *extent;
         let crowded = narrow * narrow;
         let curve = road.bent[slab.side] / narrow
             + road.steepest * (3.0 * bent * sin + road.rate * lateral) / crowded
@@ -207,9 +214,9 @@ impl Swept<'_> {
 
     /// What may be lacking between a slab's start and its end, as `corner` and `allowances`: |second derivative| per square
     /// metre of the coupling's path, and where chords meet, the jumps of the first derivative and of the place.
-    fn in_time(&self, slab: &Slab, road: &Section, pace: &Pace, reach: &Reach) -> f64 {
+    fn in_time(&self, slab: &Slab, road: &Section, pace: &Pace, extent: &SlabExtent) -> f64 {
         let link = &self.chain.links[slab.unit];
-        let Reach { front, arm, bent, sin, lateral, narrow, .. } = *reach;
+        let SlabExtent { front, arm, bent, sin, lateral, narrow, .. } = *extent;
         let crowded = narrow * narrow;
         let (w, dw, b) = (pace.w, pace.w / link.l, link.half_width);
         let along_road = 1.0 + arm * w;
@@ -262,7 +269,7 @@ impl Swept<'_> {
 }
 
 /// How far a slab reaches in the road's frame: the greatest values of all of its places, metres unless said otherwise.
-struct Reach {
+struct SlabExtent {
     /// From the axle ahead or behind, and with half the width.
     front: f64,
     arm: f64,
@@ -278,7 +285,7 @@ struct Reach {
     /// How far a foot may slide as the body deviates, and what stations that meet askew add.
     slide: f64,
     gap: f64,
-    /// The way along the road by which a foot may be from where its spot puts it.
+    /// The way along the road by which a foot may be from where its local point puts it.
     stray: f64,
 }
 

@@ -41,7 +41,7 @@ fn road(random: &mut impl FnMut() -> f64, sharpest: f64, unfit: f64) -> Corridor
 }
 
 /// The least leeway of places in a slab, by exact corners.
-fn least(swept: &Swept<'_>, slab: &Slab, random: &mut impl FnMut() -> f64) -> f64 {
+fn least(swept: &SweptVehicle<'_>, slab: &Slab, random: &mut impl FnMut() -> f64) -> f64 {
     let mut least = f64::INFINITY;
     for step in slab.steps.clone() {
         for _ in 0..6 {
@@ -84,8 +84,8 @@ fn no_place_has_less_leeway_than_a_coarse_bound_says() {
                 let rear = link.rear + random() * (link.front - link.rear - length);
                 let slab = Slab { unit, side, steps, a: [rear, rear + length], halvings: 0 };
                 let ends = [slab.steps.start, slab.steps.end];
-                let spots = ends.map(|node| slab.a.map(|a| swept.spot(node, unit, side, a, None)));
-                let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = spots else { continue };
+                let locals = ends.map(|node| slab.a.map(|a| swept.local_point(node, unit, side, a, None)));
+                let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = locals else { continue };
                 let Some(coarse) = swept.coarse(&slab, &[[c00, c01], [c10, c11]]) else { continue };
                 let least = least(&swept, &slab, &mut random);
                 assert!(coarse.bound <= least, "round {round}, {slab:?}: {coarse:?} {least}");

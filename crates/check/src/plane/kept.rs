@@ -1,9 +1,9 @@
 //! How far a piece keeps from one segment of a boundary, in the direction that shows the most.
 
-use super::piece::Piece;
+use super::piece::BodyPiece;
 use super::taken::{ROUNDING_M, Taken};
 use crate::hull::Segment;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::vector::{Point, framed, length};
 
 /// Small cells are also held apart from a segment in directions that are turned by these tangents from the shortest way, then by these
@@ -13,9 +13,9 @@ const TURN_STEPS: [f64; 6] = [0.1, 0.05, 0.025, 0.012, 0.006, 0.003];
 /// The part across of a unit vector that is as good as straight ahead. Its place on the axis is beyond all knots.
 const AHEAD: f64 = 1e-9;
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// Bound of the distance that a piece keeps from a segment, metres. `way` is the shortest from its hull.
-    pub(super) fn kept(&self, piece: &Piece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
+    pub(super) fn kept(&self, piece: &BodyPiece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
         let apart = length(way);
         if apart < ROUNDING_M {
             return self.beyond(piece, taken, hull, segment);
@@ -29,7 +29,7 @@ impl Swept<'_> {
 
     /// Bound of the room of a piece that is on the boundary or outside, metres, below zero. Beside a segment no place is farther outside than
     /// it is from the segment, and it gets no farther than by its deviation across, to the worse side.
-    pub(super) fn beyond(&self, piece: &Piece, taken: &Taken, points: &[Point], segment: Segment) -> f64 {
+    pub(super) fn beyond(&self, piece: &BodyPiece, taken: &Taken, points: &[Point], segment: Segment) -> f64 {
         let [s, e] = segment;
         let size = length([e[0] - s[0], e[1] - s[1]]);
         let u = [(e[0] - s[0]) / size, (e[1] - s[1]) / size];
@@ -49,7 +49,7 @@ impl Swept<'_> {
     /// moves less.
     pub(super) fn kept_aslant(
         &self,
-        piece: &Piece,
+        piece: &BodyPiece,
         taken: &Taken,
         hull: &[Point],
         segment: Segment,
@@ -66,7 +66,7 @@ impl Swept<'_> {
     }
 
     /// The places on the axis where the bounds of a piece's deviations along `way` are taken, as far as knots reach.
-    pub(super) fn levers(&self, piece: &Piece, way: Point) -> [f64; 2] {
+    pub(super) fn levers(&self, piece: &BodyPiece, way: Point) -> [f64; 2] {
         let link = &self.chain.links[piece.unit];
         let middle = piece.middle();
         let [along, aside] = framed(way, self.pose(piece.step, piece.unit, middle.t[0]).u);
@@ -80,7 +80,7 @@ impl Swept<'_> {
     }
 
     /// [`Self::levers`] of all directions that [`Self::kept_aslant`] tries at first.
-    pub(super) fn levers_aslant(&self, piece: &Piece, way: Point) -> [f64; 2] {
+    pub(super) fn levers_aslant(&self, piece: &BodyPiece, way: Point) -> [f64; 2] {
         let all = TURNS.into_iter().flat_map(|tangent| self.levers(piece, turned(way, tangent)));
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], a| [low.min(a), high.max(a)])
     }

@@ -1,12 +1,12 @@
 //! The search for the place of a piece that has the least room. Pieces are halved until each one is decided.
 
 use super::WORSE_M;
-use super::piece::Piece;
+use super::piece::BodyPiece;
 use super::taken::{ROUNDING_M, Taken};
 use crate::TOLERANCE_M;
 use crate::areas::Boundary;
 use crate::hull::{Segment, hull, way};
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::vector::{Point, length};
 use netcert_base::watch;
 
@@ -27,7 +27,7 @@ const HALVING_SAVES: f64 = 0.75;
 
 /// A piece that is not decided yet, and for each area the segments that may be too close to it.
 struct Node {
-    piece: Piece,
+    piece: BodyPiece,
     near: Vec<Vec<u32>>,
 }
 
@@ -95,7 +95,7 @@ impl Search<'_> {
 
 /// A piece as the boundaries see it.
 struct Seen {
-    piece: Piece,
+    piece: BodyPiece,
     taken: Taken,
     /// The hull of its nominal places.
     points: Vec<Point>,
@@ -103,10 +103,16 @@ struct Seen {
     careful: bool,
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// The place of a piece whose bound is least, with the bound, if that is below `target`. Once a claim is `refuted`, the
     /// adjoint is spared: the search ends at a place whose bound it may still improve.
-    pub(super) fn least(&mut self, piece: Piece, target: f64, active: &[usize], refuted: bool) -> Option<(Point, f64)> {
+    pub(super) fn least(
+        &mut self,
+        piece: BodyPiece,
+        target: f64,
+        active: &[usize],
+        refuted: bool,
+    ) -> Option<(Point, f64)> {
         let spans = &self.road.areas.spans;
         let boundaries = active.iter().map(|&k| &spans[k].boundary).collect();
         let mut search = Search { boundaries, target, strict: target >= -TOLERANCE_M, refuted, work: 0, least: None };
@@ -130,7 +136,7 @@ impl Swept<'_> {
     }
 
     /// A whole piece with all segments that may be too close.
-    fn first_node(&self, piece: Piece, search: &Search<'_>) -> Node {
+    fn first_node(&self, piece: BodyPiece, search: &Search<'_>) -> Node {
         let reach = search.needed(&self.taken(&piece)).max(search.conceded());
         let corners = self.corners(&piece);
         Node { piece, near: search.boundaries.iter().map(|boundary| boundary.near(&corners, reach)).collect() }
@@ -231,7 +237,7 @@ impl Swept<'_> {
     }
 
     /// The place in the middle of a piece.
-    fn middle(&self, piece: &Piece) -> Seen {
+    fn middle(&self, piece: &BodyPiece) -> Seen {
         let piece = piece.middle();
         let points = self.corners(&piece)[..1].to_vec();
         Seen { piece, taken: self.taken(&piece).still(), points, careful: true }
@@ -277,7 +283,7 @@ impl Swept<'_> {
 }
 
 /// Both halves, each with the segments of the whole.
-fn halved(halves: [Piece; 2], near: &[Vec<u32>]) -> Fate {
+fn halved(halves: [BodyPiece; 2], near: &[Vec<u32>]) -> Fate {
     Fate::Halved(halves.map(|piece| Node { piece, near: near.to_vec() }))
 }
 

@@ -13,7 +13,7 @@
 //!
 //! y + aα is the corridor's first-order bound plus a R/L (proof, section 3). R has the term L(α − sin α), so y + a sin α
 //! is bounded by the same R1. Call this bound q(a), and let A bound α. Both displacements are affine in (a, c), so their
-//! length is convex, and on a piece of a body it is greatest at a corner (`Swept::stray`).
+//! length is convex, and on a piece of a body it is greatest at a corner (`SweptVehicle::stray`).
 //!
 //! **Deviations in a direction.** Let m be a unit vector with the parts m_u along the nominal heading and m_n to its left.
 //! Towards m, the point is off by
@@ -26,18 +26,18 @@
 //! body's axis. The first term is at most |m_n| q(a'), and at most |m_n| q(a) + |m_u c| A. The lesser counts. Beyond the
 //! last knots q grows by A per metre. The second term is at most −(m_n c + m_u a) A²/2 if that is positive, else 0. For one
 //! motion at one moment, all this is affine in (a, c). So the greatest of the corners' bounds holds for the piece
-//! (`Swept::toward`).
+//! (`SweptVehicle::toward`).
 //!
 //! In a part of a step the heading turns by some φ. Seen from the unit, m turns as much. In between it is a sum of its
 //! directions at both ends. The factors are not below zero, and they add up to 1/cos(φ/2) at most. So the greater of the
 //! bounds at both ends, times this, holds in between.
 //!
 //! **Room.** The nominal places of a piece in a part of a step are in the hull of its corners at both ends, but for a bow
-//! (`Swept::bow`). The hull is convex, and so is a segment of the boundary. In the direction m of their closest places they
+//! (`SweptVehicle::bow`). The hull is convex, and so is a segment of the boundary. In the direction m of their closest places they
 //! are as far apart as these. So the piece keeps from the segment at least this distance, less the bow, less the greatest
 //! deviation towards m. A part of a deviation is within the same bound, so no place gets across the segment. The least over
-//! all segments is the cell's bound. A segment is done with at once if it is far enough for `Swept::stray`. A segment that
-//! touches the hull has no direction, and `Swept::stray` counts.
+//! all segments is the cell's bound. A segment is done with at once if it is far enough for `SweptVehicle::stray`. A segment that
+//! touches the hull has no direction, and `SweptVehicle::stray` counts.
 //!
 //! A cell whose bound is too low is halved, or the adjoint's bounds replace its tubes, until each cell ends with a bound not
 //! below the claim, or holds a place where the bound is below it. The adjoint runs about a and about a'.
@@ -56,8 +56,8 @@ mod taken;
 
 use std::ops::Range;
 
-use self::piece::Piece;
-use crate::swept::Swept;
+use self::piece::BodyPiece;
+use crate::swept::SweptVehicle;
 use crate::vector::Point;
 
 /// Once a claim has failed, only places that are worse by this are looked for, metres.
@@ -74,7 +74,7 @@ pub(crate) struct Cramped {
     pub(crate) short_m: f64,
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// Checks claims about steps: that all of every body has at least so much room, metres, in those steps that are in
     /// areas. Returns for each claim the place where it fails by most. `only` looks at one unit, and at its front, its
     /// rear and one side (0 left, 1 right).
@@ -127,10 +127,10 @@ impl Swept<'_> {
     }
 
     /// A body's outline in a step, or all of the body.
-    fn pieces(&self, step: usize, unit: usize, whole: bool, side: Option<usize>) -> Vec<Piece> {
+    fn pieces(&self, step: usize, unit: usize, whole: bool, side: Option<usize>) -> Vec<BodyPiece> {
         let link = &self.chain.links[unit];
         let (sides, b) = ([link.rear, link.front], link.half_width);
-        let piece = |a: [f64; 2], c: [f64; 2]| Piece { unit, step, a, c, t: [0.0, 1.0] };
+        let piece = |a: [f64; 2], c: [f64; 2]| BodyPiece { unit, step, a, c, t: [0.0, 1.0] };
         if whole && side.is_none() {
             // The outline is a part of it, but it is sooner decided by itself.
             return [

@@ -1,12 +1,12 @@
 //! A piece of a body in a part of a step, and its halves.
 
 use crate::feet::point;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::vector::{Point, length};
 
 /// A piece of a body, from `a[0]` to `a[1]` ahead of its axle and from `c[0]` to `c[1]` to its left, in a part of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct BodyPiece {
     pub(super) unit: usize,
     pub(super) step: usize,
     pub(super) a: [f64; 2],
@@ -15,7 +15,7 @@ pub(super) struct Piece {
     pub(super) t: [f64; 2],
 }
 
-impl Piece {
+impl BodyPiece {
     pub(super) fn middle(&self) -> Self {
         let middle = |[from, to]: [f64; 2]| [f64::midpoint(from, to); 2];
         Self { a: middle(self.a), c: middle(self.c), t: middle(self.t), ..*self }
@@ -51,9 +51,9 @@ impl Piece {
     }
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// The corners of a piece at the start of its time, then at its end.
-    pub(super) fn corners(&self, piece: &Piece) -> [Point; 8] {
+    pub(super) fn corners(&self, piece: &BodyPiece) -> [Point; 8] {
         let mut corners = [[0.0; 2]; 8];
         for (i, corner) in corners.iter_mut().enumerate() {
             let pose = self.pose(piece.step, piece.unit, piece.t[i / 4]);

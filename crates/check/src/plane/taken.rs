@@ -1,8 +1,8 @@
 //! What is deducted for a piece: how far its places may be off to all sides, towards a direction, and by its bow.
 
-use super::piece::Piece;
+use super::piece::BodyPiece;
 use crate::UP;
-use crate::swept::Swept;
+use crate::swept::SweptVehicle;
 use crate::vector::{Point, framed, length};
 
 /// Deducted for rounding, metres. Coordinates of 1e8 m are exact to 3e-8.
@@ -39,9 +39,9 @@ impl Taken {
     }
 }
 
-impl Swept<'_> {
+impl SweptVehicle<'_> {
     /// What is deducted for a piece, whatever the direction.
-    pub(super) fn taken(&self, piece: &Piece) -> Taken {
+    pub(super) fn taken(&self, piece: &BodyPiece) -> Taken {
         let headings = piece.t.map(|t| self.pose(piece.step, piece.unit, t).u);
         let [x, y] = [headings[0][0] + headings[1][0], headings[0][1] + headings[1][1]];
         let (swing, l) = (self.motion.swing(piece.step, piece.unit), self.chain.links[piece.unit].l);
@@ -56,7 +56,7 @@ impl Swept<'_> {
     }
 
     /// Bound of how far a piece's places are off towards a unit vector, metres.
-    pub(super) fn toward(&self, piece: &Piece, taken: &Taken, m: Point) -> f64 {
+    pub(super) fn toward(&self, piece: &BodyPiece, taken: &Taken, m: Point) -> f64 {
         let (step, unit) = (piece.step, piece.unit);
         let Some(tube) = self.tubes.get(step, unit) else { return f64::INFINITY };
         let across = |a: f64| self.off(step, unit, a, tube) + a.abs() * tube.r1 / self.chain.links[unit].l;
@@ -76,7 +76,7 @@ impl Swept<'_> {
     }
 
     /// Bound of the distance of a piece's places from their nominal places, metres.
-    pub(super) fn stray(&self, piece: &Piece) -> f64 {
+    pub(super) fn stray(&self, piece: &BodyPiece) -> f64 {
         let (step, unit) = (piece.step, piece.unit);
         let Some(tube) = self.tubes.get(step, unit) else { return f64::INFINITY };
         let c = piece.c[0].abs().max(piece.c[1].abs());
@@ -95,7 +95,7 @@ impl Swept<'_> {
     /// accelerated by at most ρ (|sin β cos β| + sin² β)/L² per square metre. It leaves the line between two of its places by
     /// an eighth of that times the square of the way. At the end of a step the unit turns by what chords leave out
     /// (`motion::led`), κℓ·x²/12. Returns both; the first is a quarter in half the time.
-    fn bow(&self, piece: &Piece) -> [f64; 2] {
+    fn bow(&self, piece: &BodyPiece) -> [f64; 2] {
         let link = &self.chain.links[piece.unit];
         let swing = self.motion.swing(piece.step, piece.unit);
         let q = 1.0 + swing.before * swing.before;

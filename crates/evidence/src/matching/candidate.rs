@@ -4,7 +4,7 @@
 //! mean counts: noise of some metres turns a short segment of a line by more than any road bends.
 
 use super::directed;
-use super::index::{Index, Piece};
+use super::index::{Index, RoadPiece};
 use super::names::Fit;
 use super::track::{Track, turn_deg};
 use crate::osm::LonLat;
@@ -40,7 +40,7 @@ pub(super) struct Sample {
 
 /// A piece that the line may mean.
 pub(super) struct Candidate<'i> {
-    pub(super) piece: &'i Piece,
+    pub(super) piece: &'i RoadPiece,
     pub(super) name: Fit,
     /// The edges that would be meant; at least one.
     pub(super) edges: Vec<u32>,
@@ -57,7 +57,7 @@ impl<'i> Candidate<'i> {
     /// Measures a piece; `None` if the line does not run along it, or in a direction that the piece does not have.
     pub(super) fn measured(
         index: &Index<'_>,
-        piece: &'i Piece,
+        piece: &'i RoadPiece,
         name: Fit,
         origin: LonLat,
         drawn: &Track,

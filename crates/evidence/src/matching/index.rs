@@ -11,8 +11,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::network::{EARTH_RADIUS_M, Edge, Network, Road, offset_m};
 use crate::osm::LonLat;
 
-/// A stretch of road between two nodes.
-pub(super) struct Piece {
+/// A piece of road: what lies between two nodes of a way, in both directions.
+pub(super) struct RoadPiece {
     /// Its edges along the way and against it; at least one.
     pub(super) edges: [Option<u32>; 2],
     /// Its nodes in the order of the way.
@@ -35,7 +35,7 @@ type Junction = GeomWithData<[f64; 2], i64>;
 pub(super) struct Index<'n> {
     pub(super) network: &'n Network,
     /// In the order of the edges.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<RoadPiece>,
     segments: RTree<Segment>,
     junctions: RTree<Junction>,
     edges: FxHashMap<i64, u32>,
@@ -79,7 +79,7 @@ impl<'n> Index<'n> {
     }
 
     /// The pieces of a way, in its order.
-    pub(super) fn of_way(&self, way_id: i64) -> &[Piece] {
+    pub(super) fn of_way(&self, way_id: i64) -> &[RoadPiece] {
         let Ok(road) = self.network.roads.binary_search_by_key(&way_id, |road| road.way_id) else { return &[] };
         let first = self.pieces.partition_point(|piece| (piece.road as usize) < road);
         let end = self.pieces.partition_point(|piece| piece.road as usize <= road);
@@ -91,12 +91,12 @@ impl<'n> Index<'n> {
         self.nodes.get(&id).map(|node| node.at)
     }
 
-    pub(super) fn road(&self, piece: &Piece) -> &'n Road {
+    pub(super) fn road(&self, piece: &RoadPiece) -> &'n Road {
         &self.network.roads[piece.road as usize]
     }
 
     /// The positions of a piece in the order of its way.
-    pub(super) fn line(&self, piece: &Piece) -> &'n [LonLat] {
+    pub(super) fn line(&self, piece: &RoadPiece) -> &'n [LonLat] {
         &self.network.shapes[piece.shape.start as usize..piece.shape.end as usize]
     }
 
@@ -134,7 +134,7 @@ impl<'n> Index<'n> {
     }
 
     /// A piece for messages: `way 12 (edges 34, 56)`.
-    pub(super) fn told(&self, piece: &Piece) -> String {
+    pub(super) fn told(&self, piece: &RoadPiece) -> String {
         let ids: Vec<String> =
             piece.edges.iter().flatten().map(|&edge| self.network.edges[edge as usize].id.to_string()).collect();
         let word = if ids.len() == 1 { "edge" } else { "edges" };
@@ -154,7 +154,7 @@ fn stroke_ends(network: &Network) -> FxHashSet<i64> {
 }
 
 /// Groups the directions of each stretch. They are neighbours in the network.
-fn pieces(network: &Network) -> Vec<Piece> {
+fn pieces(network: &Network) -> Vec<RoadPiece> {
     let same = |a: &(u32, &Edge), b: &(u32, &Edge)| a.1.road == b.1.road && a.1.shape == b.1.shape;
     let edges: Vec<(u32, &Edge)> = (0..).zip(&network.edges).collect();
     let piece = |group: &[(u32, &Edge)]| {
@@ -165,7 +165,7 @@ fn pieces(network: &Network) -> Vec<Piece> {
         }
         let mut ends = [edge.from_node, edge.to_node];
         ends.rotate_left(edge.direction as usize);
-        Piece { edges, ends, road: edge.road, shape: edge.shape.clone() }
+        RoadPiece { edges, ends, road: edge.road, shape: edge.shape.clone() }
     };
     edges.chunk_by(same).map(piece).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M, STEP_M};
 use super::index::Index;
-use super::names::{Fit, Wanted, told};
+use super::names::{Fit, RowName, told};
 use super::rivals::{Beside, Standing, followed, standing};
 use super::track::Track;
 use super::{Found, Match, TOLD, unmatched};
@@ -23,10 +23,10 @@ pub(super) fn matched(index: &Index<'_>, row: &Row, line: &[LonLat]) -> Found {
     if drawn.length_m() > LONGEST_M {
         return unmatched("the line is longer than 100 km; cut it");
     }
-    let wanted = Wanted::of(row.name.as_deref());
+    let row_name = RowName::of(row.name.as_deref());
     let near = index.pieces_near_line(line, REACH_M).into_iter().map(|piece| &index.pieces[piece as usize]);
     let measured = |piece| {
-        let name = wanted.fit(index.network, index.road(piece));
+        let name = row_name.fit(index.network, index.road(piece));
         Candidate::measured(index, piece, name, origin, &drawn, row.along)
     };
     let all: Vec<Candidate<'_>> = near.filter_map(measured).collect();

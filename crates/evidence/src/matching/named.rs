@@ -1,6 +1,6 @@
 //! Rows whose place is given by ids. An id that no longer exists is reported with what the way has today.
 
-use super::index::{Index, Piece};
+use super::index::{Index, RoadPiece};
 use super::track::Track;
 use super::{Found, Match, directed, unmatched};
 use crate::network::offset_m;
@@ -63,7 +63,7 @@ pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[i64;
 }
 
 /// The pieces between two nodes of a way. A closed way goes on over its end.
-fn between(all: &[Piece], [a, b]: [i64; 2]) -> Result<Vec<&Piece>, String> {
+fn between(all: &[RoadPiece], [a, b]: [i64; 2]) -> Result<Vec<&RoadPiece>, String> {
     let known = |node: &i64| all.iter().any(|piece| piece.ends.contains(node));
     if let Some(node) = [a, b].iter().find(|node| !known(node)) {
         let mut ends: Vec<String> = all.iter().flat_map(|piece| piece.ends).map(|node| node.to_string()).collect();

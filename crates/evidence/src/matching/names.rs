@@ -17,20 +17,20 @@ pub(super) enum Fit {
 }
 
 /// The name of a row, prepared for comparing.
-pub(super) struct Wanted(Option<String>);
+pub(super) struct RowName(Option<String>);
 
-impl Wanted {
+impl RowName {
     pub(super) fn of(name: Option<&str>) -> Self {
         Self(name.map(plain).filter(|name| !name.is_empty()))
     }
 
     /// What the road's name or number says.
     pub(super) fn fit(&self, network: &Network, road: &Road) -> Fit {
-        let Some(wanted) = &self.0 else { return Fit::Unknown };
+        let Some(own) = &self.0 else { return Fit::Unknown };
         let texts: Vec<&str> =
             [road.name, road.reference].into_iter().flatten().map(|id| network.strings.text(id)).collect();
         // Several numbers of a road are separated by semicolons.
-        let same = texts.iter().flat_map(|text| text.split(';').chain([*text])).any(|text| plain(text) == *wanted);
+        let same = texts.iter().flat_map(|text| text.split(';').chain([*text])).any(|text| plain(text) == *own);
         match (same, texts.is_empty()) {
             (true, _) => Fit::Same,
             (false, true) => Fit::Unknown,

@@ -1,8 +1,8 @@
 //! Rows whose place is a position: the nearest road, or for a kerb the nearest junction.
 
 use super::candidate::REACH_M;
-use super::index::{Index, Piece};
-use super::names::{Fit, Wanted, told};
+use super::index::{Index, RoadPiece};
+use super::names::{Fit, RowName, told};
 use super::rivals::could_be_meant;
 use super::track::Track;
 use super::{Found, Match, directed, listed, unmatched};
@@ -20,21 +20,21 @@ pub(super) fn matched(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
 
 /// A piece near a position.
 struct Near<'i> {
-    piece: &'i Piece,
+    piece: &'i RoadPiece,
     distance_m: f64,
     edges: Vec<u32>,
     name: Fit,
 }
 
 fn road(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
-    let wanted = Wanted::of(row.name.as_deref());
+    let row_name = RowName::of(row.name.as_deref());
     let mut all: Vec<Near<'_>> = index
         .pieces_near(&[at], REACH_M)
         .into_iter()
         .map(|piece| {
             let piece = &index.pieces[piece as usize];
             let distance_m = Track::new(at, index.line(piece).iter().copied()).foot([0.0, 0.0]).distance_m;
-            let name = wanted.fit(index.network, index.road(piece));
+            let name = row_name.fit(index.network, index.road(piece));
             Near { piece, distance_m, edges: directed(piece.edges, row.along), name }
         })
         .filter(|near| near.distance_m <= REACH_M && !near.edges.is_empty())

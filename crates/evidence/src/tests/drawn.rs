@@ -2,7 +2,7 @@
 
 use super::super::{Along, Match, Place, Quantity, Row, Value, match_rows};
 use crate::network::{Network, build};
-use crate::osm::facts::{CrossSection, Place as Country, way_facts};
+use crate::osm::facts::{CrossSection, Jurisdiction, way_facts};
 use crate::osm::{Extract, LonLat, NodeTable, Way};
 
 /// The place of `[0, 0]`.
@@ -75,7 +75,7 @@ impl Drawing {
         }
         let (ids, places) = self.nodes.iter().map(|&(id, place)| (id, Some(place))).unzip();
         extract.nodes = NodeTable { ids, places };
-        let country = |_: LonLat| Country { country: *b"DE", left_hand_traffic: false };
+        let country = |_: LonLat| Jurisdiction { country: *b"DE", left_hand_traffic: false };
         let none = CrossSection { lane: None, direction: None, carriageway: None };
         build(extract, &country, &|_, _, _| [none; 2]).0
     }

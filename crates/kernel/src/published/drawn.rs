@@ -28,13 +28,14 @@ pub enum DrawnError {
 pub struct DrawnRoute {
     /// Length of the centreline, metres.
     pub length_m: f64,
-    piece: Vec<Piece>,
+    piece: Vec<Clothoid>,
     width: Vec<Knot>,
 }
 
+/// A piece of linear curvature, from that of the piece before to its own.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Piece {
+struct Clothoid {
     length_m: f64,
     to_curvature: f64,
 }

@@ -15,7 +15,7 @@ use super::block::{Minima, UNVISITED_M};
 use super::group::gamma;
 use super::lanes::{Vector, by_instruction_set};
 use super::model::Model;
-use super::reach::Reach;
+use super::reach::VehicleReach;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
 use super::tag::{carried, unit_and_point};
@@ -101,7 +101,7 @@ impl Ascent {
         let spacing = track.spacing * KNOT_STATIONS as f64;
         let count = shift::count(track.count);
         // Until the rear has left.
-        let reach = Reach::of(model);
+        let reach = VehicleReach::of(model);
         let grid = count + ((reach.length_m + reach.front_m) / spacing).ceil() as usize + 2;
         Self {
             response: Response::new(model, spacing, grid),

@@ -59,7 +59,7 @@ pub(super) struct Way {
 }
 
 pub(super) struct Point {
-    pub(super) spot: Spot,
+    pub(super) on_axis: AxisPoint,
     pub(super) tag: u64,
     /// Distance to the previous point, metres; 0 for the first.
     pub(super) gap: f64,
@@ -71,7 +71,7 @@ pub(super) struct Point {
 
 /// A place on a body's axis, metres ahead of its axle, and its bounds on the straight.
 #[derive(Clone, Copy)]
-pub(super) struct Spot {
+pub(super) struct AxisPoint {
     pub(super) ahead: f64,
     /// g there, and the slopes of g towards half a width ahead and half a width behind.
     pub(super) gain: f64,
@@ -82,7 +82,7 @@ pub(super) struct Spot {
     pub(super) from_coupling: f64,
 }
 
-impl Spot {
+impl AxisPoint {
     /// The place at share `part` of the way from this point to the next one behind it. g is convex: it lies below its
     /// chord, and beyond either end it is no steeper towards that end than at the end.
     pub(super) fn between(self, behind: Self, part: f64) -> Self {
@@ -103,7 +103,7 @@ impl Body {
     /// Removes the straight gains, so that nothing is deducted for them.
     pub(super) fn forget_gains(&mut self) {
         for point in &mut self.points {
-            point.spot = Spot { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.spot };
+            point.on_axis = AxisPoint { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.on_axis };
         }
     }
 }
@@ -133,7 +133,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 let start = foot(unit.points[p]);
-                let spot = Spot {
+                let on_axis = AxisPoint {
                     ahead: unit.points[p],
                     gain,
                     slope_ahead: (unit.ahead[p].at(tolerance) - gain) / unit.half_width,
@@ -142,7 +142,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     from_coupling: (unit.points[p] / unit.length).abs(),
                 };
                 Point {
-                    spot,
+                    on_axis,
                     tag: tag(index, p),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: start,

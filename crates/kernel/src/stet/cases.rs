@@ -12,10 +12,10 @@ use super::marked::{Marks, marked};
 use super::model::Model;
 use super::plan::{self, Unplanned};
 use super::plane::Grounds;
-use super::reach::Reach;
+use super::reach::VehicleReach;
 use super::results::Planned;
 use super::shift::Plan;
-use super::swept::{self, Swept};
+use super::sweeps::{self, Sweeps};
 use super::track::Track;
 
 /// A vehicle on a corridor, with the spans of stations that are asked for.
@@ -41,8 +41,9 @@ pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
     for (i, case) in known.iter().enumerate() {
         // Cases of one corridor follow each other.
         let same = |other: &Case<'_>| std::ptr::eq(other.corridor, case.corridor);
-        let alike =
-            |other: &Case<'_>| std::ptr::eq(other.spans, case.spans) && Reach::of(other.model) == Reach::of(case.model);
+        let alike = |other: &Case<'_>| {
+            std::ptr::eq(other.spans, case.spans) && VehicleReach::of(other.model) == VehicleReach::of(case.model)
+        };
         let mut before = known[..i].iter().zip(&tracks).rev().take_while(|(other, _)| same(other));
         let shared = before.find(|(other, _)| alike(other)).map(|(_, track)| Rc::clone(track));
         let made = || marked(case.corridor, case.model, case.spans, Marks::Ends, &Grounds::default());
@@ -54,18 +55,18 @@ pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
         .map(|(case, track)| Unplanned { track, model: case.model, spans: case.planned, held: &[] })
         .collect();
     let plans = plan::best(&unplanned, options, &never);
-    let mut swept: Vec<Swept<'_>> = known
+    let mut sweeps: Vec<Sweeps<'_>> = known
         .iter()
         .zip(&tracks)
         .zip(plans)
-        .map(|((case, track), plan)| Swept::ready(Rc::clone(track), case.model, plan, case.spans, &never))
+        .map(|((case, track), plan)| Sweeps::ready(Rc::clone(track), case.model, plan, case.spans, &never))
         .collect();
-    swept::measure(&mut swept, Marks::Ends, &never);
-    let mut swept = swept.into_iter();
+    sweeps::measure(&mut sweeps, Marks::Ends, &never);
+    let mut sweeps = sweeps.into_iter();
     let planned = |case: &Case<'_>| {
-        let swept = if case.corridor.is_empty() { None } else { swept.next() };
+        let sweeps = if case.corridor.is_empty() { None } else { sweeps.next() };
         let nothing = || Planned { plan: Plan::centred(0), spans: Vec::new() };
-        swept.map_or_else(nothing, |swept| finished(swept, case.corridor, options))
+        sweeps.map_or_else(nothing, |sweeps| finished(sweeps, case.corridor, options))
     };
     cases.iter().map(planned).collect()
 }

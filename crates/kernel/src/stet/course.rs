@@ -14,7 +14,7 @@ use super::plan::{self, Unplanned};
 use super::plane::Grounds;
 use super::results::Planned;
 use super::shift::{self, Plan};
-use super::swept::Swept;
+use super::sweeps::Sweeps;
 use super::track::Track;
 
 /// A corridor prepared for one vehicle and one span of stations. Its certificates are those of [`super::certify_spans`].
@@ -48,13 +48,13 @@ impl<'c> Course<'c> {
         if options.correct() && plan.is_centred() {
             return None;
         }
-        let mut swept = Swept::ready(Rc::clone(&self.track), self.model, plan, spans, &never);
+        let mut sweeps = Sweeps::ready(Rc::clone(&self.track), self.model, plan, spans, &never);
         if self.corridor.areas.is_empty() {
-            swept.measure_spans();
-        } else if !swept.measure_least(&self.span, above_m, believed_m) {
+            sweeps.measure_spans();
+        } else if !sweeps.measure_least(&self.span, above_m, believed_m) {
             return None;
         }
-        Some(finished(swept, self.corridor, options))
+        Some(finished(sweeps, self.corridor, options))
     }
 
     /// Certifies the vehicle along a plan that was made on another corridor, such as a narrower one. `None` if the plan does not fit the
@@ -66,13 +66,13 @@ impl<'c> Course<'c> {
         if plan.coefficients.len() != shift::count(self.corridor.len()) {
             return None;
         }
-        let mut swept = Swept::ready(Rc::clone(&self.track), self.model, plan.clone(), spans, &never);
+        let mut sweeps = Sweeps::ready(Rc::clone(&self.track), self.model, plan.clone(), spans, &never);
         if self.corridor.areas.is_empty() {
-            swept.measure_spans();
-        } else if !swept.measure_least(&self.span, f64::NEG_INFINITY, f64::INFINITY) {
+            sweeps.measure_spans();
+        } else if !sweeps.measure_least(&self.span, f64::NEG_INFINITY, f64::INFINITY) {
             return None;
         }
         let as_given = Options { correction_sweeps: 0, max_shift_m: 0.0 };
-        Some(finished(swept, self.corridor, &as_given))
+        Some(finished(sweeps, self.corridor, &as_given))
     }
 }

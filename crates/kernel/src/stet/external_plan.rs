@@ -10,7 +10,7 @@ use super::marked::Marks;
 use super::model::Model;
 use super::results::Certificate;
 use super::shift::{Plan, STEP_M, count};
-use super::swept::Swept;
+use super::sweeps::Sweeps;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
@@ -60,8 +60,8 @@ pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<C
     let whole = 0..corridor.len();
     let spans = std::slice::from_ref(&whole);
     let never = Stop::default();
-    let swept = Swept::along(corridor, model, spans, Marks::All, &never, |_| plan.clone());
-    Ok(swept.certificate(corridor).0)
+    let sweeps = Sweeps::along(corridor, model, spans, Marks::All, &never, |_| plan.clone());
+    Ok(sweeps.certificate(corridor).0)
 }
 
 fn check(stations: usize, plan: &Plan) -> Result<(), PlanError> {

@@ -9,7 +9,7 @@ use netcert_base::stop::Stop;
 use super::marked::Marks;
 use super::model::Model;
 use super::results::{Planned, SpanResult};
-use super::swept::Swept;
+use super::sweeps::Sweeps;
 
 /// How often a vehicle is certified with corrections taken back over some areas only.
 const HOLDS: usize = 4;
@@ -22,18 +22,18 @@ pub(super) fn swept_as_one<'m>(
     marks: Marks,
     options: &Options,
     stop: &'m Stop,
-) -> (Swept<'m>, Vec<SpanResult>) {
-    let swept = Swept::held(corridor, model, spans, marks, options, &[], stop);
-    let results = swept.results();
-    held(corridor, model, spans, marks, options, &results, stop).unwrap_or((swept, results))
+) -> (Sweeps<'m>, Vec<SpanResult>) {
+    let sweeps = Sweeps::held(corridor, model, spans, marks, options, &[], stop);
+    let results = sweeps.results();
+    held(corridor, model, spans, marks, options, &results, stop).unwrap_or((sweeps, results))
 }
 
 /// The results along the plan that was swept on this corridor, or along one with corrections taken back.
-pub(super) fn finished(swept: Swept<'_>, corridor: &Corridor, options: &Options) -> Planned {
-    let results = swept.results();
-    match held(corridor, swept.model, swept.spans, Marks::Ends, options, &results, swept.stop) {
+pub(super) fn finished(sweeps: Sweeps<'_>, corridor: &Corridor, options: &Options) -> Planned {
+    let results = sweeps.results();
+    match held(corridor, sweeps.model, sweeps.spans, Marks::Ends, options, &results, sweeps.stop) {
         Some((held, spans)) => Planned { plan: held.plan, spans },
-        None => Planned { plan: swept.plan, spans: results },
+        None => Planned { plan: sweeps.plan, spans: results },
     }
 }
 
@@ -53,14 +53,14 @@ fn held<'m>(
     options: &Options,
     results: &[SpanResult],
     stop: &'m Stop,
-) -> Option<(Swept<'m>, Vec<SpanResult>)> {
+) -> Option<(Sweeps<'m>, Vec<SpanResult>)> {
     if corridor.areas.is_empty() || !options.correct() || !results.iter().any(SpanResult::folds) {
         return None;
     }
     let without = |held: &[Range<usize>]| {
-        let swept = Swept::held(corridor, model, spans, marks, options, held, stop);
-        let results = swept.results();
-        (swept, results)
+        let sweeps = Sweeps::held(corridor, model, spans, marks, options, held, stop);
+        let results = sweeps.results();
+        (sweeps, results)
     };
     let all: Vec<Range<usize>> = corridor.areas.iter().map(|area| area.heads.clone()).collect();
     let mut best = Some(without(&all)).filter(|(_, held)| safe(held) > safe(results));
@@ -70,11 +70,11 @@ fn held<'m>(
         if most == spans.len() || all.len() < 2 || held.len() == all.len() || stop.told() {
             break;
         }
-        let (swept, results) = without(&held);
-        let folding: Vec<_> = all.iter().filter(|area| swept.result(area).folds()).cloned().collect();
+        let (sweeps, results) = without(&held);
+        let folding: Vec<_> = all.iter().filter(|area| sweeps.result(area).folds()).cloned().collect();
         if safe(&results) > most {
             most = safe(&results);
-            best = Some((swept, results));
+            best = Some((sweeps, results));
         }
         let known = held.len();
         held.extend(folding.into_iter().filter(|area| !held.contains(area)).collect::<Vec<_>>());

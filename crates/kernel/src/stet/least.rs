@@ -6,10 +6,10 @@
 use std::ops::Range;
 
 use super::block::Minima;
-use super::ride::{Refining, Wanted};
+use super::ride::{Refining, SweepScope};
 use super::spans;
 use super::sweep::sweep_hopeless;
-use super::swept::Swept;
+use super::sweeps::Sweeps;
 
 /// Steps with less leeway than this are all measured, metres, at γ = 1 and at γ_min: SHRINK asks for those that fail at γ = 1, and for
 /// the next ones. At γ_min these have more leeway.
@@ -18,11 +18,11 @@ const KEEP_M: [f64; 2] = [0.2, 0.5];
 /// by more than this, metres.
 const SWERVE_M: f64 = 0.05;
 
-impl Swept<'_> {
+impl Sweeps<'_> {
     /// The sweeps along the plan, for the least leeway of one span. They end early if even the nominal leeway is less than `above_m`.
     /// Whether they did not. The least leeway of a vehicle that does not fit is believed to be below `believed_m`.
     pub(super) fn measure_least(&mut self, span: &Range<usize>, above_m: f64, believed_m: f64) -> bool {
-        let nominal = self.swept::<false>(1.0, Wanted { only: Some(span), ..Wanted::PLAIN });
+        let nominal = self.sweep_once::<false>(1.0, SweepScope { only: Some(span), ..SweepScope::PLAIN });
         let stations = || spans::stations(&self.track, span);
         if nominal.least_on(stations()) < above_m {
             return false;
@@ -51,25 +51,25 @@ impl Swept<'_> {
     /// Sweeps with the adjoint at γ = 1, and at γ_min if that fails. Steps in areas with less leeway than `keep_m` are noted.
     fn add_adjoint(&mut self, span: &Range<usize>, keep_m: [f64; 2]) {
         let blocks = self.blocks(|_| true);
-        let wanted = keep_m.map(|keep| Wanted {
+        let scopes = keep_m.map(|keep| SweepScope {
             blocks: Some(&blocks),
             refining: Refining::WhereLoose,
             only: Some(span),
             keep,
-            ..Wanted::ALL
+            ..SweepScope::ALL
         });
-        self.full = self.swept::<true>(1.0, wanted[0]);
+        self.full = self.sweep_once::<true>(1.0, scopes[0]);
         if self.at_full(span).fails() {
-            self.least = Some(self.swept::<true>(0.0, wanted[1]));
+            self.least = Some(self.sweep_once::<true>(0.0, scopes[1]));
         }
     }
 
     /// The leeway at γ = 1 without areas, and at γ_min with them, of a vehicle whose leeway is believed to be below `below_m` there.
     fn hopeless(&self, span: &Range<usize>, below_m: f64) -> [Minima; 2] {
         let blocks = self.blocks(|_| true);
-        let wanted = Wanted { only: Some(span), ..Wanted::ALL };
-        let full = self.ride(1.0, wanted);
-        let least = self.ride(0.0, Wanted { blocks: Some(&blocks), ..wanted });
+        let scope = SweepScope { only: Some(span), ..SweepScope::ALL };
+        let full = self.ride(1.0, scope);
+        let least = self.ride(0.0, SweepScope { blocks: Some(&blocks), ..scope });
         sweep_hopeless(&full, &least, below_m, self.stop)
     }
 }

@@ -7,7 +7,7 @@ use netcert_base::corridor::Corridor;
 
 use super::model::Model;
 use super::plane::Grounds;
-use super::reach::Reach;
+use super::reach::VehicleReach;
 use super::spans;
 use super::track::Track;
 
@@ -28,7 +28,7 @@ pub(super) fn marked(
     marks: Marks,
     grounds: &Grounds,
 ) -> Rc<Track> {
-    let mut track = Track::on(corridor, Reach::of(model).extensions(corridor.spacing_m), grounds);
+    let mut track = Track::on(corridor, VehicleReach::of(model).extensions(corridor.spacing_m), grounds);
     match marks {
         Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
         Marks::All => track.mark(0..corridor.len()),

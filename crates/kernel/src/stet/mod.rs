@@ -34,7 +34,7 @@ mod steer;
 mod step;
 mod stretches;
 mod sweep;
-mod swept;
+mod sweeps;
 mod tag;
 mod track;
 mod tube;
@@ -136,8 +136,8 @@ pub fn certify_planned(
     if corridor.is_empty() {
         return Ok(None);
     }
-    let (swept, _) = best_swept(corridor, model, spans, Marks::All, options, stop);
-    let certified = swept.certificate(corridor);
+    let (sweeps, _) = best_swept(corridor, model, spans, Marks::All, options, stop);
+    let certified = sweeps.certificate(corridor);
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(Some(certified))

@@ -11,7 +11,7 @@ use super::ascent::{Ascent, climb, relief};
 use super::block::{Minima, UNVISITED_M};
 use super::lanes::on_widest;
 use super::model::Model;
-use super::ride::{Ride, Wanted};
+use super::ride::{Ride, SweepScope};
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
 use super::sweep::sweep;
@@ -98,7 +98,7 @@ impl<'r> Draft<'r> {
     }
 
     fn ride(&self) -> Ride<'_> {
-        Ride { track: self.coarse, model: self.of.model, shrink: 1.0, shift: &self.shift, wanted: Wanted::ALL }
+        Ride { track: self.coarse, model: self.of.model, shrink: 1.0, shift: &self.shift, scope: SweepScope::ALL }
     }
 
     /// Keeps the coefficients if they are the best so far. No plan scores more than one with enough leeway everywhere.

@@ -14,12 +14,12 @@ const TAIL_M: f64 = 10.0;
 
 /// Assumed reach of a vehicle behind and ahead of its steer axle, metres. Vehicles of the same reach share a track.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Reach {
+pub(super) struct VehicleReach {
     pub(super) length_m: f64,
     pub(super) front_m: f64,
 }
 
-impl Reach {
+impl VehicleReach {
     pub(super) fn of(model: &Model) -> Self {
         let length_m = (model.length / LENGTH_STEP_M).ceil() * LENGTH_STEP_M;
         Self { length_m, front_m: model.front.max(LEAST_FRONT_M) }

@@ -20,13 +20,13 @@ pub(super) struct Ride<'r> {
     pub(super) shrink: f64,
     /// The steer path: metres left of the centreline at each extended station.
     pub(super) shift: &'r [f64],
-    pub(super) wanted: Wanted<'r>,
+    pub(super) scope: SweepScope<'r>,
 }
 
 /// The leeways that a sweep computes, by block of head stations. Blocks that are not wanted are skipped. Blocks to be refined
 /// use the adjoint.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted<'w> {
+pub(super) struct SweepScope<'w> {
     /// All, if not given.
     pub(super) blocks: Option<&'w [bool]>,
     pub(super) refining: Refining<'w>,
@@ -49,12 +49,12 @@ pub(super) enum Refining<'w> {
     WhereLoose,
 }
 
-impl Wanted<'_> {
+impl SweepScope<'_> {
     /// Everything, by the filter alone.
-    pub(super) const ALL: Wanted<'static> =
-        Wanted { blocks: None, refining: Refining::Nowhere, plain: false, only: None, keep: f64::NEG_INFINITY };
+    pub(super) const ALL: SweepScope<'static> =
+        SweepScope { blocks: None, refining: Refining::Nowhere, plain: false, only: None, keep: f64::NEG_INFINITY };
     /// The leeway of everything without disturbances.
-    pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
+    pub(super) const PLAIN: SweepScope<'static> = SweepScope { plain: true, ..Self::ALL };
 }
 
 impl Ride<'_> {
@@ -63,13 +63,13 @@ impl Ride<'_> {
         let track = self.track;
         let ahead = ((self.model.front + SPARE_M) / track.spacing).ceil() as usize + LANES;
         let last = track.len() - ahead - BLOCK;
-        let last = self.wanted.only.map_or(last, |span| last.min(spans::touching(track, self.model, span).end));
+        let last = self.scope.only.map_or(last, |span| last.min(spans::touching(track, self.model, span).end));
         self.asked_end().map_or(last, |end| last.min(end))
     }
 
     /// The head station behind the last block that is asked for, if not all are.
     pub(super) fn asked_end(&self) -> Option<usize> {
-        let blocks = self.wanted.blocks?;
+        let blocks = self.scope.blocks?;
         Some(blocks.iter().rposition(|&asked| asked).map_or(0, |block| (block + 1) * BLOCK))
     }
 }

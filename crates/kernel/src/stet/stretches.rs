@@ -11,7 +11,7 @@ use super::marked::Marks;
 use super::model::Model;
 use super::results::SpanResult;
 use super::shift::{KNOT_STATIONS, Plan, STEP_M, count};
-use super::swept::Swept;
+use super::sweeps::Sweeps;
 use netcert_base::corrections::Options;
 use netcert_base::corridor::{AreaSpan, Corridor};
 use netcert_base::stop::Stop;
@@ -27,7 +27,7 @@ pub(super) fn best_swept<'m>(
     marks: Marks,
     options: &Options,
     stop: &'m Stop,
-) -> (Swept<'m>, Vec<SpanResult>) {
+) -> (Sweeps<'m>, Vec<SpanResult>) {
     match swept_by_stretches(corridor, model, spans, marks, options, stop) {
         None => swept_as_one(corridor, model, spans, marks, options, stop),
         Some(joined) if safe(&joined.1) == spans.len() => joined,
@@ -46,11 +46,11 @@ pub(super) fn swept_by_stretches<'m>(
     marks: Marks,
     options: &Options,
     stop: &'m Stop,
-) -> Option<(Swept<'m>, Vec<SpanResult>)> {
+) -> Option<(Sweeps<'m>, Vec<SpanResult>)> {
     let plan = plan(corridor, model, spans, options, stop)?;
-    let swept = Swept::along(corridor, model, spans, marks, stop, |_| plan);
-    let results = swept.results();
-    Some((swept, results))
+    let sweeps = Sweeps::along(corridor, model, spans, marks, stop, |_| plan);
+    let results = sweeps.results();
+    Some((sweeps, results))
 }
 
 /// The plan of a corridor that has several stretches. `None` if it has one only, or nothing is to be corrected.
@@ -69,9 +69,9 @@ fn plan(corridor: &Corridor, model: &Model, spans: &[Range<usize>], options: &Op
         let slice = start..(own.end + beyond).min(corridor.len());
         let within = |span: &Range<usize>| span.start.max(own.start) - start..span.end.min(own.end).max(start) - start;
         let parts: Vec<Range<usize>> = spans.iter().map(within).filter(|part| part.start < part.end).collect();
-        let (swept, _) = swept_as_one(&sliced(corridor, slice.clone()), model, &parts, Marks::Ends, options, stop);
+        let (sweeps, _) = swept_as_one(&sliced(corridor, slice.clone()), model, &parts, Marks::Ends, options, stop);
         let faded = (own.start > 0, own.end < corridor.len());
-        for (i, &coefficient) in swept.plan.coefficients.iter().enumerate() {
+        for (i, &coefficient) in sweeps.plan.coefficients.iter().enumerate() {
             let at = (KNOT_STATIONS * i).min(slice.len());
             let share = |stations: usize| (stations + 1) as f64 / (2 * beyond + 1) as f64;
             let before = if faded.0 { share(at).min(1.0) } else { 1.0 };

@@ -26,7 +26,7 @@ use netcert_base::watch;
 /// `CERTIFY`, all bounds are deducted and hinges are checked. Otherwise the result is the nominal leeway of a few points less
 /// their straight gains, for planning. Each block polls `stop`; a cancelled sweep returns [`Minima::lost`].
 pub(super) fn sweep<const CERTIFY: bool>(rides: &[Ride<'_>], stop: &Stop) -> Vec<Minima> {
-    let refines = |ride: &Ride<'_>| CERTIFY && !matches!(ride.wanted.refining, Refining::Nowhere);
+    let refines = |ride: &Ride<'_>| CERTIFY && !matches!(ride.scope.refining, Refining::Nowhere);
     // Lanes take as long as the longest of their eight rides.
     let mut order: Vec<usize> = (0..rides.len()).collect();
     order.sort_by_key(|&i| (refines(&rides[i]), Reverse((rides[i].model.units.len(), rides[i].end()))));
@@ -111,13 +111,13 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
         paths.next_block(rides);
         drive::<V, CERTIFY, REFINE>(&mut motion, &group, &paths, rows, &mut trail);
         for (index, lane) in lanes.iter_mut().enumerate().filter(|(_, lane)| !lane.done) {
-            let wanted = lane.ride.wanted;
-            if CERTIFY && !matches!(wanted.refining, Refining::From(_)) {
+            let scope = lane.ride.scope;
+            if CERTIFY && !matches!(scope.refining, Refining::From(_)) {
                 lane.minima.note_loose(lane.head, first_loose(&group, index, rows));
             }
             let block = lane.head / BLOCK;
-            let asked = wanted.blocks.is_none_or(|blocks| blocks[block]);
-            let tight_from = match wanted.refining {
+            let asked = scope.blocks.is_none_or(|blocks| blocks[block]);
+            let tight_from = match scope.refining {
                 Refining::From(units) if REFINE && asked => units[block],
                 Refining::WhereLoose if REFINE && asked => lane.minima.loose[block],
                 _ => usize::MAX,
@@ -141,13 +141,13 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
 
 impl<'r> Lane<'r> {
     fn new<const CERTIFY: bool>(ride: &'r Ride<'r>) -> Self {
-        let Ride { track, model, shrink, wanted, .. } = *ride;
+        let Ride { track, model, shrink, scope, .. } = *ride;
         let mut minima = Minima::new(track.len(), !track.areas.is_empty());
-        if let Some(span) = wanted.only {
-            (minima.counted, minima.keep) = (spans::straight(track, model, span), wanted.keep);
+        if let Some(span) = scope.only {
+            (minima.counted, minima.keep) = (spans::straight(track, model, span), scope.keep);
         }
         let mut bodies = body::bodies::<CERTIFY>(model, track, shrink);
-        if wanted.plain && !CERTIFY {
+        if scope.plain && !CERTIFY {
             bodies.iter_mut().for_each(Body::forget_gains);
         }
         let (head, end) = (track.first_head, ride.end());
@@ -163,7 +163,7 @@ impl<'r> Lane<'r> {
         rows: &[f64],
         tight: &Refined,
     ) {
-        let Self { ride: Ride { track, model, shift, wanted, .. }, bodies, minima, head, .. } = self;
+        let Self { ride: Ride { track, model, shift, scope, .. }, bodies, minima, head, .. } = self;
         let (track, shift, head) = (*track, *shift, *head);
         for (unit, body) in bodies.iter_mut().enumerate() {
             let start = (unit * LANES + index) * FIELDS * BLOCK;
@@ -179,13 +179,13 @@ impl<'r> Lane<'r> {
         self.head += BLOCK;
         // Nothing else counts when all of the vehicle has left.
         let whole = 0..track.count;
-        let span = wanted.only.unwrap_or(&whole);
+        let span = scope.only.unwrap_or(&whole);
         let touched = spans::stations(track, span);
         let left = || {
             self.head >= spans::straight(track, model, span).end
                 && bodies.iter().flat_map(|body| &body.points).all(|point| point.foot > *touched.end() + 1)
         };
-        let narrow = || wanted.plain && wanted.only.is_some() && !minima.room_on(spans::stations(track, span));
+        let narrow = || scope.plain && scope.only.is_some() && !minima.room_on(spans::stations(track, span));
         self.done = self.head >= self.end || narrow() || left();
     }
 

@@ -6,9 +6,9 @@ use super::drive::{Motion, drive};
 use super::group::Group;
 use super::lanes::{LANES, Vector, on_widest};
 use super::model::Model;
-use super::reach::Reach;
+use super::reach::VehicleReach;
 use super::results::Certificate;
-use super::ride::{Ride, Wanted};
+use super::ride::{Ride, SweepScope};
 use super::steer::SteerPaths;
 use super::step::MOST;
 use super::track::Track;
@@ -49,10 +49,10 @@ fn driven<V: Vector>(corridor: &Corridor, model: &Model, certificate: &Certifica
     let Some(last) = certificate.shift_m.len().checked_sub(1) else { return tubes };
     let shrink = certificate.result.shrink;
     let group = Group::<V>::new(&[(model, shrink)]);
-    let track = Track::new(corridor, Reach::of(model).extensions(corridor.spacing_m));
+    let track = Track::new(corridor, VehicleReach::of(model).extensions(corridor.spacing_m));
     let shift: Vec<f64> =
         (0..track.len()).map(|k| certificate.shift_m[k.saturating_sub(track.lead).min(last)]).collect();
-    let ride = Ride { track: &track, model, shrink, shift: &shift, wanted: Wanted::ALL };
+    let ride = Ride { track: &track, model, shrink, shift: &shift, scope: SweepScope::ALL };
     let mut paths = SteerPaths::new(&[&ride]);
     let mut motion = Motion::new(&group, &paths);
     let mut histories = Histories::new();

@@ -43,7 +43,7 @@ pub(super) struct Room {
 }
 
 /// A link on the line to be smoothed, at arc lengths `from..to`. A link may come several times.
-pub(super) struct Piece {
+pub(super) struct DrivenLink {
     pub(super) link: usize,
     pub(super) counted: bool,
     pub(super) from: f64,
@@ -57,13 +57,13 @@ pub(super) struct Piece {
 /// The line of the chain as driven.
 pub(super) struct Course {
     pub(super) line: Polyline,
-    pub(super) pieces: Vec<Piece>,
+    pub(super) driven: Vec<DrivenLink>,
     /// Arc length at which the corridor ends. The line beyond it is for smoothing only.
     pub(super) end: f64,
 }
 
 pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
-    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(links.len()), end: 0.0 };
+    let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(links.len()), end: 0.0 };
     for link in 0..links.len() {
         course.drive(links, link, link >= approach);
     }
@@ -91,7 +91,7 @@ pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
     let before = count(params.lead_in_m, &|i| n - 1 - i % n);
     let tail = count(TAIL_M, &|i| i % n);
     let beyond = count(TAIL_M + BEYOND_M, &|i| i % n);
-    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(before + n + beyond), end: 0.0 };
+    let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(before + n + beyond), end: 0.0 };
     for i in 0..before {
         course.drive(links, n - 1 - (before - 1 - i) % n, false);
     }
@@ -114,13 +114,13 @@ impl Course {
     fn drive(&mut self, links: &[Link<'_>], link: usize, counted: bool) {
         let at: Vec<f64> = links[link].points.iter().map(|&p| self.line.push(p)).collect();
         let (from, to) = (at.first().copied().unwrap_or(0.0), at.last().copied().unwrap_or(0.0));
-        self.pieces.push(Piece { link, counted, from, to, at, aside_m: 0.0 });
+        self.driven.push(DrivenLink { link, counted, from, to, at, aside_m: 0.0 });
     }
 
     /// Removes the jogs of the line where two carriageways meet a road. Returns the jogs, placed on the new line, and
     /// the ramps by which the new line lies beside the map's.
     pub(super) fn straighten(&mut self, links: &[Link<'_>], splits: &Splits) -> (Vec<Jog>, Vec<Ramp>) {
-        let found: Vec<(usize, Jog)> = (1..self.pieces.len())
+        let found: Vec<(usize, Jog)> = (1..self.driven.len())
             .filter_map(|after| Some((after, self.split(links, splits, after)?.jog(&self.line)?)))
             .collect();
         let mut jogs: Vec<Jog> = found.iter().map(|(_, jog)| *jog).collect();
@@ -130,13 +130,13 @@ impl Course {
         let Some(relaid) = Relaid::new(&self.line, &jogs) else { return (Vec::new(), Vec::new()) };
         let aside = jogs.iter().flat_map(|jog| relaid.back(jog)).collect();
         for (after, jog) in &found {
-            let (before, behind) = self.pieces.split_at_mut(*after);
+            let (before, behind) = self.driven.split_at_mut(*after);
             let carriageway = if jog.ahead { behind } else { before };
-            carriageway.iter_mut().for_each(|piece| piece.aside_m += jog.shift_m);
+            carriageway.iter_mut().for_each(|one| one.aside_m += jog.shift_m);
         }
-        for piece in &mut self.pieces {
-            (piece.from, piece.to) = (relaid.at(piece.from), relaid.at(piece.to));
-            piece.at.iter_mut().for_each(|u| *u = relaid.at(*u));
+        for one in &mut self.driven {
+            (one.from, one.to) = (relaid.at(one.from), relaid.at(one.to));
+            one.at.iter_mut().for_each(|u| *u = relaid.at(*u));
         }
         self.end = relaid.at(self.end);
         for jog in &mut jogs {
@@ -148,26 +148,26 @@ impl Course {
 
     /// The split between the previous piece and the piece `after`, if the road parts or joins there.
     fn split(&self, links: &[Link<'_>], splits: &Splits, after: usize) -> Option<Split> {
-        let link = |piece: &Piece| links.get(piece.link);
-        let (a, b) = (link(self.pieces.get(after - 1)?)?, link(self.pieces.get(after)?)?);
+        let link = |one: &DrivenLink| links.get(one.link);
+        let (a, b) = (link(self.driven.get(after - 1)?)?, link(self.driven.get(after)?)?);
         let (ahead, two_way, one_way) = match (a.two_way, b.two_way) {
             (true, false) if splits.parts_after(a.index) => (true, a, b),
             (false, true) if splits.joined_before(b.index) => (false, b, a),
             _ => return None,
         };
-        let one_way_m = |pieces: &mut dyn Iterator<Item = &Piece>| -> f64 {
-            let carriageway = pieces.take_while(|piece| link(piece).is_some_and(|link| !link.two_way));
-            carriageway.map(|piece| piece.to - piece.from).sum()
+        let one_way_m = |driven: &mut dyn Iterator<Item = &DrivenLink>| -> f64 {
+            let carriageway = driven.take_while(|one| link(one).is_some_and(|link| !link.two_way));
+            carriageway.map(|one| one.to - one.from).sum()
         };
         Some(Split {
-            at: self.pieces.get(after)?.from,
+            at: self.driven.get(after)?.from,
             ahead,
             two_way: two_way.direction?,
             one_way: one_way.direction?,
             one_way_m: if ahead {
-                one_way_m(&mut self.pieces[after..].iter())
+                one_way_m(&mut self.driven[after..].iter())
             } else {
-                one_way_m(&mut self.pieces[..after].iter().rev())
+                one_way_m(&mut self.driven[..after].iter().rev())
             },
             ratio: two_way.ratio.max(one_way.ratio),
         })

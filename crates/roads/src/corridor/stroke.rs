@@ -3,7 +3,7 @@
 //! Only the part between a stroke's first and last edge is certified. Approach, lead-in and tail are driven. An edge
 //! that the extract cuts is entered straight, like any first edge. Turns off the stroke have corridors of their own.
 
-use super::course::{Course, Link, Piece};
+use super::course::{Course, DrivenLink, Link};
 use super::laid::{LaidOut, Sections};
 use super::merge::Jog;
 use super::profile::{Across, CHANGE_M, Gap, MIDDLE, Stretch, limit_offset, profile};
@@ -78,7 +78,7 @@ impl LaidOut<'_> {
         let (jogs, aside) = course.straighten(&links, splits);
         let smoothed = self.smoothed(&course.line);
         let smoothed = smoothed.as_ref();
-        let stretches = stretches(&links, &course.pieces).ok_or(UnknownReason::Width)?;
+        let stretches = stretches(&links, &course.driven).ok_or(UnknownReason::Width)?;
         let gaps = gaps(self.network, &links, &course, smoothed);
         let (mut profile, ramps) = profile(&stretches, &aside, &gaps);
         let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
@@ -90,7 +90,7 @@ impl LaidOut<'_> {
             return Err(UnknownReason::Geometry);
         }
         let cut = Cut { corridor: &corridor, arc: &arc, smoothed, folded: &folded, torn: &corridor.torn(), params };
-        let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
+        let spans = course.driven.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
         let stations = |from: f64, to: f64| {
             let station = |u: f64| ((arc.at(u) / corridor.spacing_m).round() as usize).min(corridor.len() - 1);
             station(from)..station(to) + 1
@@ -182,18 +182,18 @@ struct Cut<'c> {
 }
 
 impl Cut<'_> {
-    fn span(&self, piece: &Piece, link: &Link<'_>) -> EdgeSpan {
+    fn span(&self, one: &DrivenLink, link: &Link<'_>) -> EdgeSpan {
         let c = self.corridor;
         let last = c.len() - 1;
-        let first = ((self.arc.at(piece.from) / c.spacing_m).floor() as usize).min(last);
-        let end = ((self.arc.at(piece.to) / c.spacing_m).ceil() as usize).clamp(first, last);
-        let centreline_deviation_m = self.smoothed.deviation_m(piece.from, piece.to);
+        let first = ((self.arc.at(one.from) / c.spacing_m).floor() as usize).min(last);
+        let end = ((self.arc.at(one.to) / c.spacing_m).ceil() as usize).clamp(first, last);
+        let centreline_deviation_m = self.smoothed.deviation_m(one.from, one.to);
         let sharpest = c.curvature[first..=end].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
-        let broken = piece.to - piece.from < LEAST_EDGE_M
+        let broken = one.to - one.from < LEAST_EDGE_M
             || centreline_deviation_m > self.params.tolerance_m
             || (first..=end).any(|i| c.curvature[i].abs() * c.left_m[i].max(c.right_m[i]) > MOST_CROSSING)
             || self.torn.iter().any(|k| (first..=end).contains(k))
-            || self.folded.iter().any(|&u| u >= piece.from && u <= piece.to);
+            || self.folded.iter().any(|&u| u >= one.from && u <= one.to);
         EdgeSpan {
             edge: link.index,
             stations: first..end + 1,
@@ -214,17 +214,17 @@ fn all_finite(c: &Corridor) -> bool {
 
 /// One stretch per piece. A piece without width continues the previous one, or else the next one: the piece itself is
 /// `unknown`, but its neighbours' vehicles drive over it. `None` if no piece has a width.
-fn stretches(links: &[Link<'_>], pieces: &[Piece]) -> Option<Vec<Stretch>> {
-    let mut known = pieces.iter().find_map(|p| links[p.link].room)?;
-    let stretches = pieces.iter().map(|piece| {
-        known = links[piece.link].room.unwrap_or(known);
-        let link = &links[piece.link];
+fn stretches(links: &[Link<'_>], driven: &[DrivenLink]) -> Option<Vec<Stretch>> {
+    let mut known = driven.iter().find_map(|p| links[p.link].room)?;
+    let stretches = driven.iter().map(|one| {
+        known = links[one.link].room.unwrap_or(known);
+        let link = &links[one.link];
         Stretch {
-            from: piece.from,
-            to: piece.to,
-            strip: known.strip.moved(piece.aside_m),
-            shift: known.shift.moved(piece.aside_m),
-            surface: known.surface.moved(piece.aside_m),
+            from: one.from,
+            to: one.to,
+            strip: known.strip.moved(one.aside_m),
+            shift: known.shift.moved(one.aside_m),
+            surface: known.surface.moved(one.aside_m),
             two_way: link.two_way,
             ratio: link.ratio,
         }
@@ -236,15 +236,15 @@ fn stretches(links: &[Link<'_>], pieces: &[Piece]) -> Option<Vec<Stretch>> {
 /// beside it.
 fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoothed) -> Vec<Gap> {
     let mut gaps = Vec::new();
-    for piece in &course.pieces {
-        let link = &links[piece.link];
+    for one in &course.driven {
+        let link = &links[one.link];
         let range = link.edge.narrowings.start as usize..link.edge.narrowings.end as usize;
         for narrowing in network.narrowings.get(range).unwrap_or_default() {
             let last = link.skipped + link.points.len() - 1;
             let vertex = (narrowing.vertex as usize).min(last);
             let vertex = if link.edge.direction == Direction::Forward { vertex } else { last - vertex };
             let Some(vertex) = vertex.checked_sub(link.skipped) else { continue };
-            let at = piece.at[vertex];
+            let at = one.at[vertex];
             let [c, d, ..] = smoothed.curve.at(at);
             let off = [link.points[vertex][0] - c[0], link.points[vertex][1] - c[1]];
             let lateral = (d[0] * off[1] - d[1] * off[0]) / d[0].hypot(d[1]).max(LEAST_SPEED);

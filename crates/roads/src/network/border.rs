@@ -16,8 +16,8 @@ const ONE_OUTSIDE_IN: usize = 20;
 
 /// The border of a file, and how many roads speak for it.
 pub(super) struct Border {
-    whole: Part,
-    inner: Part,
+    whole: Inset,
+    inner: Inset,
     roads: usize,
     outside: usize,
 }
@@ -26,7 +26,7 @@ impl Border {
     /// The border of a box (west, south, east, north; degrees). `None` for a box that is no part of the world.
     pub(super) fn of(bbox_deg: Option<[f64; 4]>) -> Option<Self> {
         let bbox_deg = bbox_deg?;
-        let (whole, inner) = (Part::of(bbox_deg, 0.0)?, Part::of(bbox_deg, REACH_M)?);
+        let (whole, inner) = (Inset::of(bbox_deg, 0.0)?, Inset::of(bbox_deg, REACH_M)?);
         Some(Self { whole, inner, roads: 0, outside: 0 })
     }
 
@@ -55,12 +55,12 @@ fn positions<'s>(shapes: &'s [LonLat], edge: &Edge) -> &'s [LonLat] {
 }
 
 /// The part of a box that is farther from its border than some metres.
-struct Part {
+struct Inset {
     lon_e7: [i32; 2],
     lat_e7: [i32; 2],
 }
 
-impl Part {
+impl Inset {
     /// `None` for a box that is no part of the world.
     fn of([west, south, east, north]: [f64; 4], within_m: f64) -> Option<Self> {
         let e7 = |degrees: f64, most: f64| (degrees.abs() <= most).then(|| (degrees * 1e7).round() as i32);

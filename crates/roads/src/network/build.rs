@@ -1,16 +1,16 @@
 //! From an extract to a network.
 
 use super::{Ground, Network, NetworkAccount, StrokeOptions};
-use crate::osm::facts::{CrossSection, Place, WayFacts};
+use crate::osm::facts::{CrossSection, Jurisdiction, WayFacts};
 use crate::osm::{Extract, LonLat};
 
 /// As [`build_with`], with default strokes.
 pub fn build(
     extract: Extract,
-    places: &(impl Fn(LonLat) -> Place + Sync),
-    sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
+    jurisdictions: &(impl Fn(LonLat) -> Jurisdiction + Sync),
+    sections: &(impl Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync),
 ) -> (Network, NetworkAccount) {
-    build_with(extract, places, sections, &StrokeOptions::default())
+    build_with(extract, jurisdictions, sections, &StrokeOptions::default())
 }
 
 /// Cuts an extract's ways into directed edges and chains them into strokes.
@@ -20,10 +20,10 @@ pub fn build(
 /// that a roundabout's way is part of.
 pub fn build_with(
     extract: Extract,
-    places: &(impl Fn(LonLat) -> Place + Sync),
-    sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
+    jurisdictions: &(impl Fn(LonLat) -> Jurisdiction + Sync),
+    sections: &(impl Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
-    let (portion, account) = Ground::new(extract, places, sections, *options).whole();
+    let (portion, account) = Ground::new(extract, jurisdictions, sections, *options).whole();
     (portion.network, account)
 }

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use super::vertices::MISSING;
 
-/// A stretch of a way between two cuts. It stands for both directed edges, before it is known which of them exist.
+/// A piece of road: what lies between two cuts of a way. It stands for both directed edges, before it is known which of them exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Piece {
+pub(super) struct RoadPiece {
     /// The piece's vertices in [`CutWay::line`]. Neighbouring pieces share a vertex.
     pub(super) vertices: Range<usize>,
     /// Whether a node is missing just before the first or just after the last vertex.
@@ -32,7 +32,7 @@ pub(super) struct CutWay {
     /// The way's vertices without repetitions and without those of no piece.
     pub(super) line: Vec<u32>,
     /// Pieces in way order.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<RoadPiece>,
 }
 
 impl CutWay {
@@ -82,7 +82,7 @@ impl CutWay {
             let reverses = i < last && self.line[i - 1] == self.line[i + 1];
             if i == last || reverses || ends_at(&self.line[start..], i - start) {
                 let at_file_end = (cut[0] && from == start) || (cut[1] && i == last);
-                self.pieces.push(Piece { vertices: from..i + 1, cut: at_file_end });
+                self.pieces.push(RoadPiece { vertices: from..i + 1, cut: at_file_end });
                 from = i;
             }
         }

@@ -7,13 +7,13 @@ use rayon::prelude::*;
 
 use super::cell::Cell;
 use super::corners;
-use super::cut::{CutWay, Piece};
+use super::cut::{CutWay, RoadPiece};
 use super::edge_id::edge_id;
 use super::geometry::mean_radius_m;
 use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
 use super::{Edge, Narrowing, Network, NetworkAccount, Road};
-use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
+use crate::osm::facts::{CrossSection, Direction, Jurisdiction, Legal, Oneway, WayFacts};
 use crate::osm::{LonLat, NodeTable, Way};
 
 /// Ways per task, and tasks per batch. A batch's edges wait in memory beside the network, so a batch is small compared
@@ -26,21 +26,21 @@ pub(super) struct Source<'s, P, S> {
     pub(super) ways: &'s Ways,
     pub(super) nodes: &'s NodeTable,
     pub(super) vertices: &'s Vertices,
-    pub(super) places: &'s P,
+    pub(super) jurisdictions: &'s P,
     pub(super) sections: &'s S,
 }
 
 impl<P, S> Source<'_, P, S>
 where
-    P: Fn(LonLat) -> Place + Sync,
-    S: Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync,
+    P: Fn(LonLat) -> Jurisdiction + Sync,
+    S: Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync,
 {
     /// Appends the roads and edges of some ways, given by their indices, to the network.
     pub(super) fn build(&self, ways: &[u32], network: &mut Network, account: &mut NetworkAccount) {
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
-            for part in self.parts(batch) {
-                account.add_part(&part.account);
-                join(network, part.network);
+            for built in self.build_all(batch) {
+                account.add_part(&built.account);
+                join(network, built.network);
             }
         }
     }
@@ -49,19 +49,19 @@ where
     pub(super) fn look_through(&self, mut look: impl FnMut(&Network, &NetworkAccount)) {
         let ways: Vec<u32> = (0..self.ways.len() as u32).collect();
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
-            self.parts(batch).iter().for_each(|part| look(&part.network, &part.account));
+            self.build_all(batch).iter().for_each(|built| look(&built.network, &built.account));
         }
     }
 
-    fn parts(&self, ways: &[u32]) -> Vec<Part> {
-        ways.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect()
+    fn build_all(&self, ways: &[u32]) -> Vec<BuiltWays> {
+        ways.par_chunks(WAYS_PER_TASK).map(|ways| self.build_some(ways)).collect()
     }
 
-    fn part(&self, ways: &[u32]) -> Part {
-        let mut part = Part::default();
+    fn build_some(&self, ways: &[u32]) -> BuiltWays {
+        let mut built = BuiltWays::default();
         let mut cut = CutWay::default();
         for &way in ways {
-            part.account.ways_read += 1;
+            built.account.ways_read += 1;
             let vertices = self.vertices.of_refs.get(self.ways.refs(way)).unwrap_or_default();
             let way = &self.ways.get(way);
             // Rings are never cut.
@@ -72,34 +72,34 @@ where
             };
             match cut.cut(vertices, |v| self.vertices.is_junction(v), ends_at) {
                 Ok(()) => {
-                    part.account.ways_kept += 1;
-                    self.add_way(way, vertices, &cut, &mut part);
+                    built.account.ways_kept += 1;
+                    self.add_way(way, vertices, &cut, &mut built);
                 }
-                Err(why) => part.account.leave_out(why),
+                Err(why) => built.account.leave_out(why),
             }
         }
-        part
+        built
     }
 
-    fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, part: &mut Part) {
+    fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, built: &mut BuiltWays) {
         let first = vertices.iter().copied().find(|&v| v != MISSING).unwrap_or(cut.line[0]);
-        let place = (self.places)(self.position(first));
+        let jurisdiction = (self.jurisdictions)(self.position(first));
         let positions = || cut.line.iter().map(|&v| self.position(v));
         let ring_radius_m = if way.facts.roundabout { mean_radius_m(positions()) } else { None };
-        part.account.no_country += u64::from(place.country == Place::NOWHERE.country);
-        let road = road(way, &place, (self.sections)(&way.facts, &place, ring_radius_m));
+        built.account.no_country += u64::from(jurisdiction.country == Jurisdiction::NOWHERE.country);
+        let road = road(way, &jurisdiction, (self.sections)(&way.facts, &jurisdiction, ring_radius_m));
         let oneway = on_a_ring(way.facts.roundabout, way.facts.oneway);
-        let base = part.network.shapes.len();
-        part.network.shapes.extend(positions());
-        let edges = part.network.edges.len();
+        let base = built.network.shapes.len();
+        built.network.shapes.extend(positions());
+        let edges = built.network.edges.len();
         for piece in &cut.pieces {
-            self.add_piece((&road, oneway), cut, piece, base, part);
+            self.add_piece((&road, oneway), cut, piece, base, built);
         }
-        number(&mut part.network.edges[edges..], way.id);
+        number(&mut built.network.edges[edges..], way.id);
         if self.vertices.go_on_over_the_antimeridian() {
-            self.join_over_the_antimeridian(&cut.line, &mut part.network.edges[edges..], base);
+            self.join_over_the_antimeridian(&cut.line, &mut built.network.edges[edges..], base);
         }
-        part.network.roads.push(road);
+        built.network.roads.push(road);
     }
 
     /// Gives the nodes at the 180th meridian the id that they have on both sides. Ids of edges do not depend on it: a file may have
@@ -113,9 +113,16 @@ where
         }
     }
 
-    fn add_piece(&self, (road, oneway): (&Road, Oneway), cut: &CutWay, piece: &Piece, base: usize, part: &mut Part) {
+    fn add_piece(
+        &self,
+        (road, oneway): (&Road, Oneway),
+        cut: &CutWay,
+        piece: &RoadPiece,
+        base: usize,
+        built: &mut BuiltWays,
+    ) {
         let line = &cut.line[piece.vertices.clone()];
-        let narrowings = part.network.narrowings.len() as u32;
+        let narrowings = built.network.narrowings.len() as u32;
         let mut barred = false;
         let mut limits: Option<Legal> = None;
         for (i, &v) in line.iter().enumerate() {
@@ -123,22 +130,22 @@ where
             barred |= point.barred;
             limits = Some(limits.map_or_else(|| point.legal.clone(), |known| known.merge(&point.legal)));
             if let Some(passage_m) = point.passage_m {
-                part.network.narrowings.push(Narrowing { vertex: i as u32, passage_m });
+                built.network.narrowings.push(Narrowing { vertex: i as u32, passage_m });
             }
         }
-        let narrowings = narrowings..part.network.narrowings.len() as u32;
+        let narrowings = narrowings..built.network.narrowings.len() as u32;
         let node = |v: Option<&u32>| v.map_or(0, |&v| self.nodes.ids[v as usize]);
         let ends = [node(line.first()), node(line.last())];
         for direction in [Direction::Forward, Direction::Backward] {
-            part.account.directions += 1;
+            built.account.directions += 1;
             if !driven(oneway, direction) {
-                part.account.not_driven += 1;
+                built.account.not_driven += 1;
                 continue;
             }
             let of_road = &road.legal[direction as usize];
             let edge = Edge {
                 id: 0,
-                road: part.network.roads.len() as u32,
+                road: built.network.roads.len() as u32,
                 from_node: ends[direction as usize],
                 to_node: ends[1 - direction as usize],
                 direction,
@@ -148,8 +155,8 @@ where
                 barred,
                 cut: piece.cut,
             };
-            part.account.count_edge(&edge, limits.as_ref().is_some_and(|limits| *limits != Legal::default()));
-            part.network.edges.push(edge);
+            built.account.count_edge(&edge, limits.as_ref().is_some_and(|limits| *limits != Legal::default()));
+            built.network.edges.push(edge);
         }
     }
 
@@ -175,19 +182,19 @@ where
 
 /// The network part of some consecutive ways, with ranges and indices from 0.
 #[derive(Default)]
-struct Part {
+struct BuiltWays {
     network: Network,
     account: NetworkAccount,
 }
 
-fn join(network: &mut Network, part: Network) {
+fn join(network: &mut Network, built: Network) {
     let road = network.roads.len() as u32;
     let shape = network.shapes.len() as u32;
     let narrowing = network.narrowings.len() as u32;
-    network.roads.extend(part.roads);
-    network.shapes.extend(part.shapes);
-    network.narrowings.extend(part.narrowings);
-    network.edges.extend(part.edges.into_iter().map(|edge| Edge {
+    network.roads.extend(built.roads);
+    network.shapes.extend(built.shapes);
+    network.narrowings.extend(built.narrowings);
+    network.edges.extend(built.edges.into_iter().map(|edge| Edge {
         road: edge.road + road,
         shape: edge.shape.start + shape..edge.shape.end + shape,
         narrowings: edge.narrowings.start + narrowing..edge.narrowings.end + narrowing,
@@ -195,7 +202,7 @@ fn join(network: &mut Network, part: Network) {
     }));
 }
 
-fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
+fn road(way: &Way, jurisdiction: &Jurisdiction, sections: [CrossSection; 2]) -> Road {
     let facts = &way.facts;
     Road {
         way_id: way.id,
@@ -206,8 +213,8 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         name: facts.name,
         reference: facts.reference,
         lanes: facts.tagged_lanes(),
-        country: place.country,
-        left_hand_traffic: place.left_hand_traffic,
+        country: jurisdiction.country,
+        left_hand_traffic: jurisdiction.left_hand_traffic,
         sections,
         legal: [facts.legal_forward.clone(), facts.legal_backward.clone()],
         max_speed_km_h: facts.max_speed_km_h,

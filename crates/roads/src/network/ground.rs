@@ -12,13 +12,13 @@ use super::blocks::{self, Block};
 use super::border::Border;
 use super::edges::Source;
 use super::extent::Extent;
-use super::portion::{Place, Portion};
+use super::portion::{Portion, PortionIndices};
 use super::restrictions::{self, Reading, Resolved};
 use super::stroke::{self, Chained};
 use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
 use super::{Area, Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
-use crate::osm::facts::{AreaKind, CrossSection, Place as Country, WayFacts};
+use crate::osm::facts::{AreaKind, CrossSection, Jurisdiction, WayFacts};
 use crate::osm::{self, Extract, LonLat, NodeTable, StringPool};
 
 /// An extract made ready. `places` and `sections` are those of [`super::build_with`].
@@ -33,7 +33,7 @@ pub struct Ground<P, S> {
     bbox_deg: Option<[f64; 4]>,
     /// What is counted of the extract as a whole.
     account: NetworkAccount,
-    places: P,
+    jurisdictions: P,
     sections: S,
     options: StrokeOptions,
 }
@@ -59,11 +59,11 @@ pub struct Division {
 
 impl<P, S> Ground<P, S>
 where
-    P: Fn(LonLat) -> Country + Sync,
-    S: Fn(&WayFacts, &Country, Option<f64>) -> [CrossSection; 2] + Sync,
+    P: Fn(LonLat) -> Jurisdiction + Sync,
+    S: Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync,
 {
     /// Makes an extract ready.
-    pub fn new(extract: Extract, places: P, sections: S, options: StrokeOptions) -> Self {
+    pub fn new(extract: Extract, jurisdictions: P, sections: S, options: StrokeOptions) -> Self {
         let Extract { ways, refs, nodes, points, restrictions, areas, backdrop: _, strings, account: read } = extract;
         let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
         drop((refs, points));
@@ -76,7 +76,19 @@ where
         };
         let areas = areas::usable(areas, &nodes, &mut account);
         let bbox_deg = read.header.bbox_deg();
-        Self { ways, nodes, vertices, restrictions, areas, strings, bbox_deg, account, places, sections, options }
+        Self {
+            ways,
+            nodes,
+            vertices,
+            restrictions,
+            areas,
+            strings,
+            bbox_deg,
+            account,
+            jurisdictions,
+            sections,
+            options,
+        }
     }
 
     /// The number of node references of all ways: about twice that of directed edges.
@@ -181,7 +193,7 @@ where
         let areas = self.areas.iter().filter(meets).cloned().collect();
         let (chained, resolved) = self.complete(&mut network, takes, areas);
         let owned = owned(&network, &block);
-        Portion::new(network, Some(Place { block, roads, edges, owned }), chained, resolved)
+        Portion::new(network, Some(PortionIndices { block, roads, edges, owned }), chained, resolved)
     }
 
     /// The areas that any portion keeps, sorted by way id.
@@ -200,8 +212,8 @@ where
     }
 
     fn source(&self) -> Source<'_, P, S> {
-        let Self { ways, nodes, vertices, places, sections, .. } = self;
-        Source { ways, nodes, vertices, places, sections }
+        let Self { ways, nodes, vertices, jurisdictions, sections, .. } = self;
+        Source { ways, nodes, vertices, jurisdictions, sections }
     }
 
     /// The steps from edges to a network.

@@ -15,14 +15,14 @@ pub struct Portion {
     /// The network of the portion's cells and what surrounds them.
     pub network: Network,
     /// `None` if this is the whole network.
-    place: Option<Place>,
+    indices: Option<PortionIndices>,
     chained: Chained,
     resolved: Resolved,
 }
 
 /// How a portion's indices continue in the whole network.
 #[derive(serde::Serialize, serde::Deserialize)]
-pub(super) struct Place {
+pub(super) struct PortionIndices {
     pub(super) block: Block,
     /// By road.
     pub(super) roads: Vec<u32>,
@@ -46,8 +46,8 @@ pub struct PortionRestriction {
 }
 
 impl Portion {
-    pub(super) fn new(network: Network, place: Option<Place>, chained: Chained, resolved: Resolved) -> Self {
-        Self { network, place, chained, resolved }
+    pub(super) fn new(network: Network, indices: Option<PortionIndices>, chained: Chained, resolved: Resolved) -> Self {
+        Self { network, indices, chained, resolved }
     }
 
     /// A network as it is.
@@ -62,25 +62,25 @@ impl Portion {
     /// The index of an edge in the whole network.
     #[must_use]
     pub fn edge(&self, edge: u32) -> u32 {
-        self.place.as_ref().map_or(edge, |place| place.edges[edge as usize])
+        self.indices.as_ref().map_or(edge, |indices| indices.edges[edge as usize])
     }
 
     /// The index of a road in the whole network.
     #[must_use]
     pub fn road(&self, road: u32) -> u32 {
-        self.place.as_ref().map_or(road, |place| place.roads[road as usize])
+        self.indices.as_ref().map_or(road, |indices| indices.roads[road as usize])
     }
 
     /// Whether the portion owns an edge.
     #[must_use]
     pub fn owns(&self, edge: u32) -> bool {
-        self.place.as_ref().is_none_or(|place| place.owned[edge as usize])
+        self.indices.as_ref().is_none_or(|indices| indices.owned[edge as usize])
     }
 
     /// Whether a position is in one of the portion's cells.
     #[must_use]
     pub fn has(&self, position: LonLat) -> bool {
-        self.place.as_ref().is_none_or(|place| place.block.has(super::Cell::of(position)))
+        self.indices.as_ref().is_none_or(|indices| indices.block.has(super::Cell::of(position)))
     }
 
     /// The edges that the portion owns, with their indices here, in order.

@@ -10,7 +10,7 @@
 use geo::orient::{Direction, Orient};
 use geo::{Area as _, BooleanOps, Euclidean, Length, LineString, MultiPolygon, Polygon, Simplify, unary_union};
 
-use super::Reach;
+use super::LengthClass;
 use super::arm::{Across, Arm};
 use crate::corridor::{Area, outline};
 use crate::osm::facts::Policy;
@@ -52,13 +52,13 @@ pub(super) struct Ground<'a> {
     pub(super) surface: Option<&'a MultiPolygon>,
     /// What the crossing has beside the two roads' strips.
     pub(super) crossing: &'a [Polygon],
-    pub(super) reach: Reach,
+    pub(super) length_class: LengthClass,
 }
 
 impl Ground<'_> {
     /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
-        let strip = |arm: &Arm| strip(arm, 0..arm.len(), &|k| arm.near_node(k, self.reach), [0.0; 2]);
+        let strip = |arm: &Arm| strip(arm, 0..arm.len(), &|k| arm.near_node(k, self.length_class), [0.0; 2]);
         let mut parts: Vec<Polygon> = [self.from, self.to].into_iter().filter_map(strip).collect();
         parts.extend(self.common());
         parts.extend(self.joint());
@@ -114,7 +114,7 @@ impl Ground<'_> {
         let piece = |arm: &Arm, prolonged: [f64; 2]| {
             let range =
                 arm.node.saturating_sub(near(arm)).max(arm.own.start)..(arm.node + near(arm) + 1).min(arm.own.end);
-            strip(arm, range, &|k| arm.near_node(k, self.reach), prolonged)
+            strip(arm, range, &|k| arm.near_node(k, self.length_class), prolonged)
         };
         match (piece(self.from, [0.0, JOINT_M]), piece(self.to, [JOINT_M, 0.0])) {
             (Some(from), Some(to)) => from.intersection(&to).0,
@@ -235,9 +235,9 @@ fn strip(
 
 /// An area with the straight road beyond the ends of the two roads' corridors, for planning: a planned path is not held against the
 /// cut end of a road (see [`crate::corridor::open_ends`]).
-pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], reach: Reach) -> MultiPolygon {
+pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], length_class: LengthClass) -> MultiPolygon {
     let overlap = |arm: &Arm| (OVERLAP_ROAD_M / arm.line.spacing_m) as usize;
-    let edges = |arm: &Arm, k: usize| arm.near_node(k, reach);
+    let edges = |arm: &Arm, k: usize| arm.near_node(k, length_class);
     let before = from.complete[0]
         .then(|| strip(from, 0..overlap(from).min(from.len()), &|k| edges(from, k), [BEYOND_M, 0.0]))
         .flatten();

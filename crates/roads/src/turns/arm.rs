@@ -5,7 +5,7 @@
 //! goes on narrower beyond the junction is as wide as mapped up to it. A narrow place narrows the junction with it.
 
 use super::path::{Pose, hermite};
-use super::{Opening, Reach};
+use super::{LengthClass, Opening};
 use crate::corridor::{Corridor, Frame, LaidOut, Params, Sections, StrokeCorridor};
 use crate::network::Network;
 use crate::osm::facts::{Policy, Strip};
@@ -267,30 +267,31 @@ impl Arm {
     }
 
     /// Half-widths at a station, so far before a joint.
-    pub(super) fn before_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
+    pub(super) fn before_joint(&self, k: usize, joint: usize, length_class: LengthClass) -> [f64; 2] {
         widened(
             &self.line,
             k,
             self.gradual[k],
-            reach.opening_before(joint.saturating_sub(k) as f64 * self.line.spacing_m),
+            length_class.opening_before(joint.saturating_sub(k) as f64 * self.line.spacing_m),
         )
     }
 
     /// Half-widths at a station, so far behind a joint.
-    pub(super) fn after_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
+    pub(super) fn after_joint(&self, k: usize, joint: usize, length_class: LengthClass) -> [f64; 2] {
         widened(
             &self.line,
             k,
             self.gradual[k],
-            reach.opening_after(k.saturating_sub(joint) as f64 * self.line.spacing_m),
+            length_class.opening_after(k.saturating_sub(joint) as f64 * self.line.spacing_m),
         )
     }
 
     /// Edges of the turn's strip at a station, wherever paths leave and join: the whole strip near the node, and the
     /// corridor's own far from it.
-    pub(super) fn near_node(&self, k: usize, reach: Reach) -> Across {
+    pub(super) fn near_node(&self, k: usize, length_class: LengthClass) -> Across {
         let away_m = k.abs_diff(self.node) as f64 * self.line.spacing_m - WHOLE_STRIP_M;
-        let opening = if k < self.node { reach.opening_before(away_m) } else { reach.opening_after(away_m) };
+        let opening =
+            if k < self.node { length_class.opening_before(away_m) } else { length_class.opening_after(away_m) };
         let [left, right] = widened(&self.line, k, self.strip[k], opening.of_an_area());
         [left, -right]
     }

@@ -2,7 +2,7 @@
 //!
 //! The roads meet at one node, or at two nodes of a complex. Paths need only the two centrelines, so both are alike.
 
-use super::Reach;
+use super::LengthClass;
 use super::area::{along, segments_cross};
 use super::arm::Arm;
 use super::code::Shape;
@@ -21,7 +21,7 @@ pub(super) struct Arms {
     pub(super) from: Arm,
     pub(super) to: Arm,
     pub(super) strokes: [u32; 2],
-    pub(super) reach: Reach,
+    pub(super) length_class: LengthClass,
     /// The stations at which the centrelines cross, if they do.
     meeting: Option<[f64; 2]>,
 }
@@ -35,8 +35,8 @@ pub(super) struct PathLine {
 }
 
 impl Arms {
-    pub(super) fn new(from: Arm, to: Arm, strokes: [u32; 2], reach: Reach) -> Self {
-        let mut arms = Self { from, to, strokes, reach, meeting: None };
+    pub(super) fn new(from: Arm, to: Arm, strokes: [u32; 2], length_class: LengthClass) -> Self {
+        let mut arms = Self { from, to, strokes, length_class, meeting: None };
         arms.meeting = arms.meeting();
         arms
     }

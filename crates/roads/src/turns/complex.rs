@@ -10,7 +10,7 @@ use super::arm::StrokeLine;
 use super::arms::Arms;
 use super::crossing;
 use super::junction::Junction;
-use super::{Reach, TurnParams};
+use super::{LengthClass, TurnParams};
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
@@ -32,7 +32,7 @@ impl Complex {
         line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
         policy: Policy,
         params: &TurnParams,
-        reach: Reach,
+        length_class: LengthClass,
     ) -> Result<Self, UnknownReason> {
         let frame = line(movement.from)?.made.frame;
         let way: Vec<u32> = [&[movement.from], through, &[movement.to]].concat();
@@ -41,12 +41,12 @@ impl Complex {
             let lines = [line(from)?, line(to)?];
             if !goes_on(lines[0], from, to) {
                 let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
-                turns.push(Junction::new(network, movement, lines, frame, policy, params, reach)?);
+                turns.push(Junction::new(network, movement, lines, frame, policy, params, length_class)?);
             }
         }
         let (Some(first), Some(last)) = (turns.first(), turns.last()) else { return Err(UnknownReason::Geometry) };
         let strokes = [first.arms.strokes[0], last.arms.strokes[1]];
-        let arms = Arms::new(first.arms.from.clone(), last.arms.to.clone(), strokes, reach);
+        let arms = Arms::new(first.arms.from.clone(), last.arms.to.clone(), strokes, length_class);
         let inside = crossing::carriageways(network, through, frame, params);
         Ok(Self { arms, turns, inside })
     }

@@ -15,7 +15,7 @@ use super::junction::Junction;
 use super::path::STEP_M;
 use super::rays::{Boundary, Widths};
 use super::roundabout::Passage;
-use super::{Reach, TurnPath, family};
+use super::{LengthClass, TurnPath, family};
 use crate::corridor::{Area, Frame};
 use crate::network::Network;
 use crate::verdict::UnknownReason;
@@ -69,7 +69,7 @@ impl TurnCorridors {
         turn_rad: f64,
         way: Way,
     ) -> Result<Self, UnknownReason> {
-        let opened = opened(&area, way.arms(), way.reach());
+        let opened = opened(&area, way.arms(), way.length_class());
         // An island that cannot be placed may lie anywhere.
         let islands = islands::touching(network, frame, &opened).map_err(|_| UnknownReason::Geometry)?;
         let (area, opened) = (islands::without(area, &islands), islands::without(opened, &islands));
@@ -111,8 +111,13 @@ impl TurnCorridors {
             Way::Direct(arms) => arms.strokes,
             Way::Passage(passage) => passage.strokes,
         };
-        let ends =
-            Ends { arms: self.arms(), strokes, stations: line.joints, reach: self.reach(), islands: &self.islands };
+        let ends = Ends {
+            arms: self.arms(),
+            strokes,
+            stations: line.joints,
+            length_class: self.length_class(),
+            islands: &self.islands,
+        };
         ends.path(code, &line.points, widths, &self.rings)
     }
 
@@ -129,8 +134,8 @@ impl TurnCorridors {
         self.way.arms()
     }
 
-    pub(super) fn reach(&self) -> Reach {
-        self.way.reach()
+    pub(super) fn length_class(&self) -> LengthClass {
+        self.way.length_class()
     }
 
     /// The boundary of the area for planning.
@@ -147,10 +152,10 @@ impl Way {
         }
     }
 
-    fn reach(&self) -> Reach {
+    fn length_class(&self) -> LengthClass {
         match self {
-            Self::Direct(arms) => arms.reach,
-            Self::Passage(passage) => passage.entry.arms.reach,
+            Self::Direct(arms) => arms.length_class,
+            Self::Passage(passage) => passage.entry.arms.length_class,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::arm::{Arm, StrokeLine};
 use super::arms::{Arms, MEET_M};
 use super::junction::{JOIN_M, Junction, LEAVE_M};
-use super::{Reach, TurnCorridors};
+use super::{LengthClass, TurnCorridors};
 use crate::corridor::{Corridor, EdgeSpan, Frame, StrokeCorridor};
 use crate::network::Network;
 use crate::osm::facts::Policy;
@@ -30,7 +30,7 @@ impl DrawnCorner {
     ///
     /// # Errors
     /// `Geometry`: a width or the angle cannot be drawn.
-    pub fn corridors(&self, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
+    pub fn corridors(&self, length_class: LengthClass) -> Result<TurnCorridors, UnknownReason> {
         let possible = self.widths_m.iter().all(|width_m| *width_m > 0.0 && width_m.is_finite())
             && self.turn_rad > 0.0
             && self.turn_rad < std::f64::consts::PI;
@@ -40,11 +40,11 @@ impl DrawnCorner {
         let frame = Frame::around_degrees([(0.0, 0.0)]).map_err(|_| UnknownReason::Geometry)?;
         let [from_m, to_m] = self.widths_m;
         let (from, to) = (road(0, frame, 0.0, from_m), road(1, frame, -self.turn_rad, to_m));
-        let before_m = reach.run_in_m() + reach.counted_before_m() + LEAVE_M;
-        let after_m = reach.counted_after_m() + MEET_M + JOIN_M;
+        let before_m = length_class.run_in_m() + length_class.counted_before_m() + LEAVE_M;
+        let after_m = length_class.counted_after_m() + MEET_M + JOIN_M;
         let arriving = Arm::arriving(&from, edge(0, false), frame, Policy::Lane, [before_m, MEET_M])?;
         let leaving = Arm::leaving(&to, edge(1, true), frame, Policy::Lane, [MEET_M, after_m])?;
-        let junction = Junction::drawn(Arms::new(arriving, leaving, [0, 1], reach), self.kerb_radius_m);
+        let junction = Junction::drawn(Arms::new(arriving, leaving, [0, 1], length_class), self.kerb_radius_m);
         TurnCorridors::at(junction, &Network::default(), frame)
     }
 }
@@ -93,7 +93,7 @@ mod tests {
             for widths_m in [[2.75, 2.75], [4.5, 4.5], [3.25, 7.5], [14.0, 5.5]] {
                 for kerb_radius_m in [0.0, 2.0, 6.0, 10.0] {
                     let corner = DrawnCorner { turn_rad: f64::to_radians(turn_deg), widths_m, kerb_radius_m };
-                    let made = corner.corridors(Reach::Short).unwrap();
+                    let made = corner.corridors(LengthClass::Short).unwrap();
                     let (rings_m2, area_m2) = (ground_m2(&made), made.area.unsigned_area());
                     assert!((rings_m2 - area_m2).abs() < 0.05, "{corner:?}: {rings_m2} {area_m2}");
                     assert!((made.turn_rad.abs() - corner.turn_rad).abs() < 1e-9);
@@ -106,7 +106,7 @@ mod tests {
     fn what_cannot_be_drawn_is_no_corner() {
         for (turn_rad, width_m) in [(0.0, 4.0), (3.2, 4.0), (1.5, 0.0), (1.5, f64::NAN), (f64::NAN, 4.0)] {
             let corner = DrawnCorner { turn_rad, widths_m: [4.0, width_m], kerb_radius_m: 5.0 };
-            assert_eq!(corner.corridors(Reach::Short).err(), Some(UnknownReason::Geometry), "{corner:?}");
+            assert_eq!(corner.corridors(LengthClass::Short).err(), Some(UnknownReason::Geometry), "{corner:?}");
         }
     }
 }

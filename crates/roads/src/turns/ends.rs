@@ -10,7 +10,7 @@ use super::arm::Arm;
 use super::islands;
 use super::path::{self, STEP_M};
 use super::rays::Widths;
-use super::{Joint, Reach, TurnPath};
+use super::{Joint, LengthClass, TurnPath};
 use crate::corridor::{Area, AreaSpan, Corridor, open_ends};
 
 /// Turns tighter than the first value (metres) have stations as close as the second (metres). Bounds are then as tight
@@ -31,7 +31,7 @@ pub(super) struct Ends<'a> {
     pub(super) strokes: [u32; 2],
     /// One station per arm.
     pub(super) stations: [usize; 2],
-    pub(super) reach: Reach,
+    pub(super) length_class: LengthClass,
     /// Islands that the turn's area lacks.
     pub(super) islands: &'a [Polygon],
 }
@@ -48,14 +48,18 @@ impl Ends<'_> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
         // No steps at the joints.
-        widths.gentle(points, [from.before_joint(leave, leave, self.reach), to.after_joint(join, join, self.reach)]);
-        let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
-        let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
+        widths.gentle(
+            points,
+            [from.before_joint(leave, leave, self.length_class), to.after_joint(join, join, self.length_class)],
+        );
+        let before =
+            ((self.length_class.run_in_m() + self.length_class.counted_before_m()) / from.line.spacing_m) as usize;
+        let after = (self.length_class.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
         let tail = join + 1..(join + 1 + after).min(to.len());
         let mut line = Line::default();
         for k in lead.clone() {
-            let [left_m, right_m] = from.before_joint(k, leave, self.reach);
+            let [left_m, right_m] = from.before_joint(k, leave, self.length_class);
             line.push(from.point(k), left_m, right_m);
         }
         let begins = line.length_m;
@@ -64,7 +68,7 @@ impl Ends<'_> {
         }
         let ends = line.length_m;
         for k in tail.clone() {
-            let [left_m, right_m] = to.after_joint(k, join, self.reach);
+            let [left_m, right_m] = to.after_joint(k, join, self.length_class);
             line.push(to.point(k), left_m, right_m);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
@@ -78,7 +82,7 @@ impl Ends<'_> {
             let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
             let turn = nearest(&corridor, from.point(leave), station(begins))
                 ..nearest(&corridor, to.point(join), station(ends)) + 1;
-            let counted = station(begins - self.reach.counted_before_m())..last + 1;
+            let counted = station(begins - self.length_class.counted_before_m())..last + 1;
             let whole = !corridor.torn().iter().any(|k| turn.contains(k));
             whole.then_some((corridor, turn, counted))
         };
@@ -106,7 +110,8 @@ impl Ends<'_> {
         let stations = |m: f64| (m / corridor.spacing_m).ceil() as usize;
         let joined = turn.end.saturating_sub(1);
         let start = turn.start.saturating_sub(stations(BEFORE_M));
-        let end = (joined + stations(self.reach.longest_m() + BEYOND_M) + 1).min(corridor.len().saturating_sub(1));
+        let end =
+            (joined + stations(self.length_class.longest_m() + BEYOND_M) + 1).min(corridor.len().saturating_sub(1));
         (end >= start + 2).then(|| AreaSpan { heads: start..end, area: Arc::clone(area) })
     }
 }

@@ -2,7 +2,7 @@
 
 use geo::{MultiPolygon, Polygon};
 
-use super::Reach;
+use super::LengthClass;
 use super::TurnParams;
 use super::area::Ground;
 use super::arm::{Arm, StrokeLine};
@@ -43,20 +43,20 @@ impl Junction {
         frame: Frame,
         policy: Policy,
         params: &TurnParams,
-        reach: Reach,
+        length_class: LengthClass,
     ) -> Result<Self, UnknownReason> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let own = [edge(movement.from)?, edge(movement.to)?];
         let [from, to] = own.map(|edge| network.road(edge));
         let node = own[0].to_node;
-        let before_m = reach.run_in_m() + reach.counted_before_m() + LEAVE_M;
-        let after_m = reach.counted_after_m() + MEET_M + JOIN_M;
+        let before_m = length_class.run_in_m() + length_class.counted_before_m() + LEAVE_M;
+        let after_m = length_class.counted_after_m() + MEET_M + JOIN_M;
         let strip = params.strip.max(policy);
         let surface = surface(network, node, &[from, to], frame);
         let arriving = Arm::arriving(lines[0], movement.from, frame, strip, [before_m, MEET_M])?;
         let leaving = Arm::leaving(lines[1], movement.to, frame, strip, [MEET_M, after_m])?;
         Ok(Self {
-            arms: Arms::new(arriving, leaving, lines.map(|line| line.stroke), reach),
+            arms: Arms::new(arriving, leaving, lines.map(|line| line.stroke), length_class),
             policy,
             left_hand_traffic: from.left_hand_traffic,
             kerb_radius_m: params.own_kerb_m.unwrap_or_else(|| params.kerbs.at(network, node, own)),
@@ -91,7 +91,7 @@ impl Junction {
             kerb_radius_m: self.kerb_radius_m,
             surface: self.surface.as_ref(),
             crossing: &self.crossing,
-            reach: self.arms.reach,
+            length_class: self.arms.length_class,
         };
         let (area, rounded) = ground.area();
         (area, rounded.then_some(self.kerb_radius_m))

@@ -95,15 +95,15 @@ impl Default for TurnParams {
 
 /// Length class of the vehicles for which a turn is made. It determines how much road before and after the turn counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Reach {
+pub enum LengthClass {
     /// Vehicles up to 20 m.
     Short,
     /// Vehicles up to 60 m.
     Long,
 }
 
-impl Reach {
-    /// The reach for a vehicle. `None` if the vehicle is too long.
+impl LengthClass {
+    /// The length class of a vehicle. `None` if the vehicle is too long.
     #[must_use]
     pub fn of(vehicle: &crate::vehicle::Vehicle) -> Option<Self> {
         let length_m = vehicle.length_m;
@@ -201,7 +201,7 @@ pub struct Joint {
 /// One path of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPath {
-    /// Code of the path. The same turn, policy and reach make the same path from the same code.
+    /// Code of the path. The same turn, policy and length class make the same path from the same code.
     pub code: i64,
     /// Corridor of approach, turn and departure, metres in the turn's frame. Its areas are the junction's and, where a road ends with it,
     /// the straight road beyond.
@@ -230,9 +230,9 @@ pub fn turn_corridors(
     movement: Movement,
     policy: Policy,
     params: &TurnParams,
-    reach: Reach,
+    length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
-    on_lines_of(network, (movement, &[]), policy, params, reach)
+    on_lines_of(network, (movement, &[]), policy, params, length_class)
 }
 
 /// The corridors of a turn or passage, as [`turn_corridors`].
@@ -244,9 +244,9 @@ pub fn corridors_of(
     turn: &TurnFacts,
     policy: Policy,
     params: &TurnParams,
-    reach: Reach,
+    length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
-    on_lines_of(network, (turn.movement, &turn.through), policy, params, reach)
+    on_lines_of(network, (turn.movement, &turn.through), policy, params, length_class)
 }
 
 fn on_lines_of(
@@ -254,7 +254,7 @@ fn on_lines_of(
     over: (Movement, &[u32]),
     policy: Policy,
     params: &TurnParams,
-    reach: Reach,
+    length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
     let edges = [over.0.from, over.0.to].into_iter().chain(over.1.iter().copied());
     let strokes = edges.map(|edge| Some((edge, stroke_of(network, edge)?)));
@@ -269,7 +269,7 @@ fn on_lines_of(
         let stroke = strokes.iter().find(|of| of.0 == edge).map(|of| of.1);
         lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
     };
-    turn_on(network, over, &line, policy, params, reach)
+    turn_on(network, over, &line, policy, params, length_class)
 }
 
 /// The corridors of a turn, or of a passage over edges, given in driving order after the movement. `line` gives the line of an
@@ -285,21 +285,24 @@ pub fn turn_on<'l>(
     line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
     policy: Policy,
     params: &TurnParams,
-    reach: Reach,
+    length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
     let (from, to) = (line(movement.from)?, line(movement.to)?);
     let frame = from.made.frame;
     let over = (movement, through);
     match (network.passage_kind(through), through.first()) {
         (Some(PassageKind::Roundabout), Some(&arc)) => {
-            let passage = roundabout::Passage::new(network, over, [from, line(arc)?, to], policy, params, reach)?;
+            let passage =
+                roundabout::Passage::new(network, over, [from, line(arc)?, to], policy, params, length_class)?;
             TurnCorridors::over(passage, network, frame)
         }
-        (Some(PassageKind::Complex), _) => {
-            TurnCorridors::across(complex::Complex::new(network, over, line, policy, params, reach)?, network, frame)
-        }
+        (Some(PassageKind::Complex), _) => TurnCorridors::across(
+            complex::Complex::new(network, over, line, policy, params, length_class)?,
+            network,
+            frame,
+        ),
         _ => {
-            let junction = junction::Junction::new(network, movement, [from, to], frame, policy, params, reach)?;
+            let junction = junction::Junction::new(network, movement, [from, to], frame, policy, params, length_class)?;
             TurnCorridors::at(junction, network, frame)
         }
     }

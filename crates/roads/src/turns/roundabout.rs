@@ -14,7 +14,7 @@ use super::code::Shape;
 use super::family::{FEW_NUMBERS, few};
 use super::junction::Junction;
 use super::path::{STEP_M, hermite};
-use super::{Reach, TurnParams};
+use super::{LengthClass, TurnParams};
 use crate::corridor::Frame;
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
@@ -45,7 +45,7 @@ impl Passage {
         [from, ring, to]: [&StrokeLine; 3],
         policy: Policy,
         params: &TurnParams,
-        reach: Reach,
+        length_class: LengthClass,
     ) -> Result<Self, UnknownReason> {
         let (Some(&first), Some(&last)) = (through.first(), through.last()) else {
             return Err(UnknownReason::Geometry);
@@ -59,7 +59,7 @@ impl Passage {
         let frame = from.made.frame;
         let junction = |from: u32, to: u32, lines: [&StrokeLine; 2]| {
             let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
-            Junction::new(network, movement, lines, frame, policy, params, reach)
+            Junction::new(network, movement, lines, frame, policy, params, length_class)
         };
         let entry = junction(movement.from, first, [from, ring])?;
         let exit = junction(last, movement.to, [ring, to])?;

@@ -11,7 +11,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, turn_on};
+use crate::turns::{LengthClass, Planner, StrokeLine, TurnCorridors, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
@@ -54,7 +54,7 @@ impl Turning<'_> {
 
     /// The edges of the way before and after the turn on which its corridor lies.
     pub(crate) fn near(&self, network: &Network) -> Vec<u32> {
-        let Some(reach) = Reach::of(&self.driver.model.vehicle) else { return Vec::new() };
+        let Some(reach) = LengthClass::of(&self.driver.model.vehicle) else { return Vec::new() };
         let edges = &self.drive.edges;
         let stroke = |edge: u32| self.stroke_of.get(edge as usize);
         let length_m = |edge: u32| network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
@@ -107,7 +107,7 @@ impl Turning<'_> {
 
     fn made(&self, network: &Network) -> Option<TurnCorridors> {
         let settings = self.settings();
-        let reach = Reach::of(&self.driver.model.vehicle)?;
+        let reach = LengthClass::of(&self.driver.model.vehicle)?;
         let driven = [self.join.from, self.join.to].into_iter().chain(self.join.arcs.iter().copied());
         let mut lines: Vec<StrokeLine> = Vec::new();
         for edge in driven {

@@ -4,7 +4,7 @@ use netcert::corridor::Corridor;
 use netcert::stet::{self, Certificate, Model, Options, Side};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
-pub use netcert_oracle::claim::{Claim, Place};
+pub use netcert_oracle::claim::{BodyPoint, Claim};
 
 /// Runs the certifier with default corrections. `None` if it makes no claim worth refuting.
 pub fn certify(corridor: &Corridor, vehicle: &Vehicle) -> Option<Claim> {
@@ -23,7 +23,7 @@ pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Optio
 /// The claim of a certificate. `None` if it claims nothing worth refuting.
 pub fn of(corridor: &Corridor, certificate: Certificate) -> Option<Claim> {
     let result = certificate.result;
-    let limiting = Place {
+    let limiting = BodyPoint {
         foot_m: result.limiting.station as f64 * corridor.spacing_m,
         unit: result.limiting.unit,
         side: if result.limiting.side == Side::Left { 1.0 } else { -1.0 },

@@ -4,7 +4,7 @@ use netcert::corridor::Corridor;
 use netcert::stet::{Certificate, Side};
 use netcert::vehicle::Vehicle;
 
-use super::claim::{Claim, Place};
+use super::claim::{BodyPoint, Claim};
 use super::draw::Draw;
 use super::{area_attack, attack};
 
@@ -17,7 +17,7 @@ const PLACES: usize = 8;
 pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, seed: u64) {
     let result = &certificate.result;
     let at = &result.limiting;
-    let limiting = Place {
+    let limiting = BodyPoint {
         foot_m: at.station as f64 * corridor.spacing_m,
         unit: at.unit,
         side: if at.side == Side::Left { 1.0 } else { -1.0 },

@@ -11,7 +11,7 @@ use super::rules;
 use crate::seal;
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
-use netcert_check::Swept;
+use netcert_check::SweptVehicle;
 use netcert_check::plan;
 use netcert_check::printed;
 use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
@@ -225,7 +225,12 @@ impl Document {
     }
 
     /// Checks a tube: its centres, shapes and radii at the stations of the steer axle.
-    fn tube(&self, along: &Subject<'_>, swept: &mut Swept<'_>, claim: &TubeClaim) -> Option<(&'static str, String)> {
+    fn tube(
+        &self,
+        along: &Subject<'_>,
+        swept: &mut SweptVehicle<'_>,
+        claim: &TubeClaim,
+    ) -> Option<(&'static str, String)> {
         let origin = [self.corridor.x[0], self.corridor.y[0]];
         for k in 0..claim.t.len() {
             let centre = along.axle_at(k, claim.unit)?;

@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
+use crate::turns::{KerbSource, LengthClass, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
@@ -198,7 +198,7 @@ impl TurnsClaim<'_> {
         stroke_of: &FxHashMap<u32, u32>,
         lines: &Lines,
     ) -> Result<TurnCorridors, UnknownReason> {
-        let reach = Reach::of(self.vehicle).ok_or(UnknownReason::Geometry)?;
+        let reach = LengthClass::of(self.vehicle).ok_or(UnknownReason::Geometry)?;
         let line = |edge: u32| match stroke_of.get(&edge).and_then(|stroke| lines.get(stroke)) {
             Some(Ok(line)) => Ok(line),
             Some(Err(reason)) => Err(*reason),

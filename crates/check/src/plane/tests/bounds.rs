@@ -6,11 +6,11 @@ use super::*;
 fn an_oblique_wall_at_a_front_corner_takes_less_than_deviations_to_all_sides() {
     let (chain, corridor) = (semi(), walled(0.6));
     let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let steps = (subject.road.lead + 90) * STEPS..(subject.road.lead + 99) * STEPS;
     let proved = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
     let link = &chain.links[0];
-    let corner = Piece { unit: 0, step: steps.end - 1, a: [link.front; 2], c: [link.half_width; 2], t: [1.0; 2] };
+    let corner = BodyPiece { unit: 0, step: steps.end - 1, a: [link.front; 2], c: [link.half_width; 2], t: [1.0; 2] };
     let to_all_sides = 0.6 - swept.stray(&corner);
     assert!(proved > to_all_sides + 0.05, "{proved} {to_all_sides}");
     // The tractor's clock is its axle: it has not passed its place.
@@ -24,7 +24,7 @@ fn an_oblique_wall_at_a_front_corner_takes_less_than_deviations_to_all_sides() {
 fn no_deviation_within_the_bounds_is_farther_in_any_direction() {
     let (chain, corridor) = (semi(), turn_left());
     let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-    let swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut random = random(7);
     let mut between = |[from, to]: [f64; 2]| from + (to - from) * random();
     let (mut tightest, mut counted) = (f64::INFINITY, 0);
@@ -38,7 +38,7 @@ fn no_deviation_within_the_bounds_is_farther_in_any_direction() {
         let m = [angle.cos(), angle.sin()];
         let side = if between([-1.0, 1.0]) < 0.0 { -link.half_width } else { link.half_width };
         let from = between([link.rear, link.front - 0.5]);
-        let piece = Piece { unit, step, a: [from, from + 0.5], c: [side; 2], t: [0.25, 0.75] };
+        let piece = BodyPiece { unit, step, a: [from, from + 0.5], c: [side; 2], t: [0.25, 0.75] };
         let bound = swept.toward(&piece, &swept.taken(&piece), m);
         for _ in 0..1000 {
             let alpha = between([-tube.a, tube.a]);
@@ -66,7 +66,7 @@ fn no_deviation_within_the_bounds_is_farther_in_any_direction() {
 fn in_a_turn_the_bound_is_the_nominal_distance_less_the_deviation() {
     let (chain, corridor) = (semi(), turn_left());
     let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let steps = swept.steps(100..190);
     let proved = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
     // The check needs the adjoint at the ends of pieces only; the places in between need it everywhere.
@@ -80,7 +80,7 @@ fn in_a_turn_the_bound_is_the_nominal_distance_less_the_deviation() {
     let rsc_m = most(&chain, &corridor, 100..191);
     assert!((rsc_m - TOLERANCE_M - proved).abs() < 3e-3, "{rsc_m} {proved}");
     // The filter alone is too loose.
-    let mut filtered = Swept::filtered(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut filtered = SweptVehicle::filtered(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     assert!(filtered.cramped(&[(steps, proved)], None)[0].is_some());
     // Half-widths of half a metre, which no part of the vehicle keeps, say nothing.
     assert!(!confirmed(&chain, &Corridor { areas: Vec::new(), ..corridor.clone() }, &claim(100..191, 0.0)));
@@ -158,7 +158,7 @@ fn driven(
 }
 
 /// How far a place may be off towards `m`, written anew from the bounds.
-fn towards(swept: &Swept<'_>, at: &Piece, m: Point, u: Point) -> f64 {
+fn towards(swept: &SweptVehicle<'_>, at: &BodyPiece, m: Point, u: Point) -> f64 {
     let tube = swept.tubes.get(at.step, at.unit).unwrap();
     let q = |a: f64| swept.off(at.step, at.unit, a, tube) + a.abs() * tube.r1 / swept.chain.links[at.unit].l;
     let (a, c) = (at.a[0], at.c[0]);
@@ -169,7 +169,7 @@ fn towards(swept: &Swept<'_>, at: &Piece, m: Point, u: Point) -> f64 {
 
 /// The least distance of nominal places from a segment of the area's boundary, less their deviation towards it: at all
 /// nodes, every 5 cm.
-fn densest(swept: &Swept<'_>, corridor: &Corridor, steps: Range<usize>) -> f64 {
+fn densest(swept: &SweptVehicle<'_>, corridor: &Corridor, steps: Range<usize>) -> f64 {
     let area = &corridor.areas[0].area;
     let mut least = f64::INFINITY;
     for step in steps {
@@ -186,7 +186,7 @@ fn densest(swept: &Swept<'_>, corridor: &Corridor, steps: Range<usize>) -> f64 {
                 let [x, y] = point(pose, a, c);
                 let place = [x + START[0], y + START[1]];
                 assert!(area.contains(place), "{place:?}");
-                let at = Piece { unit, step, a: [a; 2], c: [c; 2], t: [0.0; 2] };
+                let at = BodyPiece { unit, step, a: [a; 2], c: [c; 2], t: [0.0; 2] };
                 for segment in area.segments() {
                     let way = to_segment(place, segment);
                     let apart = length(way);

@@ -8,7 +8,7 @@ use super::*;
 fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
     let (chain, corridor) = (semi(), turn_left());
     let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut aslant = 0;
     for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1), (170, 0), (170, 1)] {
         let step = (subject.road.lead + station) * STEPS;
@@ -17,7 +17,7 @@ fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
         for (a, along) in
             [link.rear, link.front].into_iter().flat_map(|a| (-8..=8).map(move |k| (a, 0.05 * f64::from(k))))
         {
-            let piece = Piece { unit, step, a: [a; 2], c: [link.half_width; 2], t: [0.0; 2] };
+            let piece = BodyPiece { unit, step, a: [a; 2], c: [link.half_width; 2], t: [0.0; 2] };
             let pose = swept.pose(step, unit, 0.0);
             let (corner, vertex) = (point(pose, a, link.half_width), point(pose, a + along, link.half_width + 0.35));
             let way = [vertex[0] - corner[0], vertex[1] - corner[1]];
@@ -45,11 +45,11 @@ fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
 fn a_place_beyond_a_long_wall_lacks_its_depth_and_its_deviation_across() {
     let (chain, corridor) = (semi(), turn_left());
     let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-    let swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut less = 0;
     for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1)] {
         let (step, link) = ((subject.road.lead + station) * STEPS, &chain.links[unit]);
-        let piece = Piece { unit, step, a: [link.front; 2], c: [link.half_width; 2], t: [0.0; 2] };
+        let piece = BodyPiece { unit, step, a: [link.front; 2], c: [link.half_width; 2], t: [0.0; 2] };
         let corner = point(swept.pose(step, unit, 0.0), link.front, link.half_width);
         let taken = swept.taken(&piece).still();
         for degrees in (0..360).step_by(15) {
@@ -85,10 +85,11 @@ fn what_is_missing_grows_evenly_as_a_corner_passes_over_a_wall() {
     let mut proved_m = |beyond_m: f64| {
         let corridor = walled(-beyond_m);
         let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
-        let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.05);
+        let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.05);
         let steps = (subject.road.lead + 90) * STEPS..(subject.road.lead + 99) * STEPS;
         let proved_m = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
-        let corner = Piece { unit: 0, step: steps.end - 1, a: [link.front; 2], c: [link.half_width; 2], t: [1.0; 2] };
+        let corner =
+            BodyPiece { unit: 0, step: steps.end - 1, a: [link.front; 2], c: [link.half_width; 2], t: [1.0; 2] };
         stray_m = swept.stray(&corner);
         proved_m
     };

@@ -157,7 +157,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     let subject = Subject::new(&chain, &begins, |_| 0.0, false).unwrap();
     let motion = subject.motion.as_ref().unwrap();
     let first = (subject.road.lead + 60) * STEPS;
-    let mut swept = Swept::new(&chain, &subject.road, motion, 0.15);
+    let mut swept = SweptVehicle::new(&chain, &subject.road, motion, 0.15);
     let steps = first..first + 4;
     let found = swept.cramped(&[(steps, 0.0)], None)[0].unwrap();
     assert_eq!((found.step, found.unit), (first, 1));
@@ -165,7 +165,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     // The same where one of two areas ends.
     let ends = straight(&[(20..61, vec![strip(6.0)]), (20..160, hole)]);
     let subject = Subject::new(&chain, &ends, |_| 0.0, false).unwrap();
-    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     assert_eq!(swept.cramped(&[(first - 8..first, 0.0)], None), [None]);
     assert_eq!(swept.cramped(&[(first - 8..first + 8, 0.0)], None)[0].unwrap().step, first);
 }

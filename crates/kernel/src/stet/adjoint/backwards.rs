@@ -22,7 +22,7 @@ const OWN_WEIGHT: f64 = 0.6;
 
 /// Bounds of eight outputs of a unit at a guess of the unit's own remainder, and the growth of each bound per metre of
 /// that remainder.
-pub(super) struct Reach<V> {
+pub(super) struct OutputBounds<V> {
     pub(super) bound: V,
     pub(super) per_remainder: V,
 }
@@ -121,14 +121,14 @@ impl<V: Vector> Sum<V> {
 impl<V: Vector> Trail<'_, V> {
     /// Runs the adjoint of eight outputs of a unit backwards from `station`.
     #[inline(always)]
-    pub(super) fn reach(
+    pub(super) fn backwards(
         &self,
         group: &Group<'_, V>,
         lane: usize,
         station: usize,
         unit: usize,
         batch: usize,
-    ) -> Reach<V> {
+    ) -> OutputBounds<V> {
         let outputs = &self.outputs[lane][unit][batch];
         let histories = &self.histories[lane];
         let now = histories[0].at(station);
@@ -166,7 +166,7 @@ impl<V: Vector> Trail<'_, V> {
             sum.add(rate, STRIDES[stride], bent);
         };
         let per_remainder = outputs.axle.abs() * (OWN_WEIGHT * now[unit].rate);
-        Reach { bound: sum.bound + rest, per_remainder }
+        OutputBounds { bound: sum.bound + rest, per_remainder }
     }
 
     /// The longest stride that may be used from `at` back, on the way from `station`.

@@ -5,7 +5,7 @@ use crate::stet::group::Group;
 use crate::stet::lanes::{LANES, Vector};
 use crate::stet::step::{Step, heading, remainder, validity};
 
-use super::backwards::Reach;
+use super::backwards::OutputBounds;
 use super::outputs::{AXLE, HEADING, POINTS};
 use super::trail::Trail;
 
@@ -39,7 +39,7 @@ impl<V: Vector> Trail<'_, V> {
         let own = &mut history.at_mut(station)[unit];
         own.note(of, lane, guess, own.hitch, own.axle);
         let count = self.outputs[lane][unit].len();
-        let first = self.reach(group, lane, station, unit, 0);
+        let first = self.backwards(group, lane, station, unit, 0);
         let at = |z: f64, output: usize| {
             let more = (z - guess).max(0.0);
             (first.bound.lane(output) + first.per_remainder.lane(output) * more) * SURE
@@ -63,8 +63,9 @@ impl<V: Vector> Trail<'_, V> {
         };
         let more = (z - guess).max(0.0);
         for batch in 0..count {
-            let reach = if batch == 0 { Reach { ..first } } else { self.reach(group, lane, station, unit, batch) };
-            let bounds = (reach.bound + reach.per_remainder * more) * SURE;
+            let batch_bounds =
+                if batch == 0 { OutputBounds { ..first } } else { self.backwards(group, lane, station, unit, batch) };
+            let bounds = (batch_bounds.bound + batch_bounds.per_remainder * more) * SURE;
             for (i, bound) in bounds.array().into_iter().enumerate() {
                 if let Some(point) = (batch * LANES + i).checked_sub(POINTS)
                     && let Some(place) = points.get_mut(point * BLOCK)

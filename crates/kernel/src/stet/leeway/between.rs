@@ -67,7 +67,7 @@ impl<V: Vector> Gap<'_, V> {
     fn inner<const REFINED: bool>(&self, (before, after): (&Sample<V>, &Sample<V>), part: f64) -> Sample<V> {
         let Self { track, body, index, s, knots } = *self;
         let (ahead, point) = (&body.points[index - 1], &body.points[index]);
-        let spot = ahead.spot.between(point.spot, part);
+        let on_axis = ahead.on_axis.between(point.on_axis, part);
         let inner = Knots {
             ahead: knots.ahead,
             own: knots.ahead + (knots.own - knots.ahead) * part,
@@ -75,12 +75,12 @@ impl<V: Vector> Gap<'_, V> {
             gap_ahead: part * point.gap,
             gap_behind: (1.0 - part) * point.gap,
         };
-        let (x, y) = s.ahead(spot.ahead);
+        let (x, y) = s.ahead(on_axis.ahead);
         let from = before.feet.station(0) as f64;
         let guess = (from + (after.feet.station(0) as f64 - from) * part).round() as usize;
         let feet = follow(track, guess, x, y);
         let tag = if part < 0.5 { before.tag } else { after.tag };
-        sample_at::<V, true, REFINED>(track, body, &spot, s, &inner, feet, tag).0
+        sample_at::<V, true, REFINED>(track, body, &on_axis, s, &inner, feet, tag).0
     }
 }
 

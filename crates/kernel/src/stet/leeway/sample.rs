@@ -1,7 +1,7 @@
 //! One body point at eight head stations.
 
 use crate::stet::block::{Feet, LOST_M, Minima};
-use crate::stet::body::{Body, NEAR_M, Seen, Spot, follow, least, near, next_foot, place};
+use crate::stet::body::{AxisPoint, Body, NEAR_M, Seen, follow, least, near, next_foot, place};
 use crate::stet::lanes::{LANES, Vector, by_instruction_set};
 use crate::stet::track::Track;
 
@@ -66,7 +66,7 @@ pub(super) fn sample<V: Vector, const CERTIFY: bool, const REFINED: bool>(
 ) -> Sample<V> {
     let (ahead, tag, first) = {
         let point = &body.points[index];
-        (point.spot.ahead, point.tag, point.foot)
+        (point.on_axis.ahead, point.tag, point.foot)
     };
     let (x, y) = s.ahead(ahead);
     let last = LANES - 1;
@@ -74,8 +74,8 @@ pub(super) fn sample<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.lane(last));
         let feet = Feet::Run(first);
-        let spot = &body.points[index].spot;
-        let sides = leeways::<V, CERTIFY, REFINED>(track, feet, &seen, s, knots, body, spot);
+        let on_axis = &body.points[index].on_axis;
+        let sides = leeways::<V, CERTIFY, REFINED>(track, feet, &seen, s, knots, body, on_axis);
         return Sample::new(&seen, feet, tag, sides);
     }
     sample_apart::<V, CERTIFY, REFINED>(track, body, index, s, knots)
@@ -91,10 +91,10 @@ by_instruction_set! {
         knots: &Knots<V>,
     ) -> Sample<V> {
         let point = &body.points[index];
-        let (tag, spot) = (point.tag, point.spot);
-        let (x, y) = s.ahead(spot.ahead);
+        let (tag, on_axis) = (point.tag, point.on_axis);
+        let (x, y) = s.ahead(on_axis.ahead);
         let feet = follow(track, point.foot, x, y);
-        let (sample, seen) = sample_at::<V, CERTIFY, REFINED>(track, body, &spot, s, knots, feet, tag);
+        let (sample, seen) = sample_at::<V, CERTIFY, REFINED>(track, body, &on_axis, s, knots, feet, tag);
         let last = LANES - 1;
         body.points[index].foot = next_foot(track, feet[last], seen.along.lane(last));
         sample
@@ -106,15 +106,15 @@ by_instruction_set! {
 pub(super) fn sample_at<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
     body: &Body,
-    spot: &Spot,
+    on_axis: &AxisPoint,
     s: &States<V>,
     knots: &Knots<V>,
     feet: [usize; LANES],
     tag: u64,
 ) -> (Sample<V>, Seen<V>) {
-    let (x, y) = s.ahead(spot.ahead);
+    let (x, y) = s.ahead(on_axis.ahead);
     let seen = place(track.fields.gather(&feet), x, y);
-    let sides = leeways::<V, CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, spot);
+    let sides = leeways::<V, CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, on_axis);
     let found = |side: V| {
         let one = |i: usize| if seen.along.lane(i).abs() <= FOUND_M { side.lane(i) } else { LOST_M };
         V::from(std::array::from_fn(one))

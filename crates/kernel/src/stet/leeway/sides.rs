@@ -1,7 +1,7 @@
 //! Leeway at the two side points of one place on the axis: the room beside them, less all bounds.
 
 use crate::stet::block::Feet;
-use crate::stet::body::{Body, Seen, Spot};
+use crate::stet::body::{AxisPoint, Body, Seen};
 use crate::stet::lanes::Vector;
 use crate::stet::track::Track;
 
@@ -72,7 +72,7 @@ pub(super) fn leeways<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     s: &States<V>,
     knots: &Knots<V>,
     body: &Body,
-    spot: &Spot,
+    on_axis: &AxisPoint,
 ) -> Sides<V> {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
@@ -83,17 +83,17 @@ pub(super) fn leeways<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     let spread = spread([at, at], [left_at, right_at]);
     let mut edges = [Edge::left(at, left_along, left_at, spread[0]), Edge::right(at, right_along, right_at, spread[1])];
     if CERTIFY && rough(at) {
-        edges = apart(track, feet, s, spot.ahead, body.half_width, &edges);
+        edges = apart(track, feet, s, on_axis.ahead, body.half_width, &edges);
     }
     let [left, right] = [edges[0].room, edges[1].room];
-    let lean_left = (askew * -spot.slope_ahead).max(askew * spot.slope_behind);
-    let lean_right = (askew * spot.slope_ahead).max(askew * -spot.slope_behind);
+    let lean_left = (askew * -on_axis.slope_ahead).max(askew * on_axis.slope_behind);
+    let lean_right = (askew * on_axis.slope_ahead).max(askew * -on_axis.slope_behind);
     if !CERTIFY {
-        let gain = cos * spot.gain;
+        let gain = cos * on_axis.gain;
         let parallel = [at.curvature; 2];
         return Sides { left: left - gain - lean_left, right: right - gain - lean_right, parallel };
     }
-    let reach = spot.ahead.abs();
+    let reach = on_axis.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
     let a = extras + body.heading + s.remainder;
@@ -104,7 +104,7 @@ pub(super) fn leeways<V: Vector, const CERTIFY: bool, const REFINED: bool>(
         (c * knots.own, knots.lean(-askew, c, a), knots.lean(askew, c, a))
     } else {
         // g is convex, and neither `extra` nor g is steeper than its heading bound.
-        let base = c * (s.extra_axle * spot.from_axle + s.extra_coupling * spot.from_coupling + spot.gain)
+        let base = c * (s.extra_axle * on_axis.from_axle + s.extra_coupling * on_axis.from_coupling + on_axis.gain)
             + t * extras * body.half_width
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
         (base, lean_left, lean_right)
@@ -115,7 +115,7 @@ pub(super) fn leeways<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     let second = (c * s.remainder + t * a2 * 0.5) * reach;
     let common = base + second;
     let parallel = [at.curvature * edges[0].spread, at.curvature * edges[1].spread];
-    let passing = Passing { s, at, cos, sin, ahead: spot.ahead, step2: track.spacing * track.spacing };
+    let passing = Passing { s, at, cos, sin, ahead: on_axis.ahead, step2: track.spacing * track.spacing };
     Sides {
         left: passing.left_over(&edges[0], [common, lean_left, along], body.half_width),
         right: passing.left_over(&edges[1], [common, lean_right, along], -body.half_width),

@@ -31,7 +31,7 @@ const ROUNDED_M: f64 = 0.1;
 const ROUNDED: f64 = 0.1;
 
 /// A piece of a side over a step.
-pub(super) struct Swept<'a> {
+pub(super) struct SweptPiece<'a> {
     /// Its ends at both stations.
     pub(super) before: [Point; 2],
     pub(super) after: [Point; 2],
@@ -42,7 +42,7 @@ pub(super) struct Swept<'a> {
     pub(super) enough: f64,
 }
 
-impl Swept<'_> {
+impl SweptPiece<'_> {
     /// The piece at both stations, prolonged by what it slides along itself: what is left is its way across, and the difference
     /// of its two directions, metres.
     fn unslid(&self) -> ([Point; 2], [Point; 2], f64) {
@@ -289,7 +289,7 @@ impl Ground {
     /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
     /// stations; the leeway is less by what the piece may move towards each segment. Neither is too great. Both are negative where
     /// the hull is not inside. With `inside`, the piece is known to be inside at the first station.
-    pub(super) fn swept(&self, piece: &Swept<'_>, inside: bool) -> (f64, f64) {
+    pub(super) fn swept(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
         let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
         let outside = || {
             let depth = self.depth(piece);
@@ -332,7 +332,7 @@ impl Ground {
     ///
     /// A part of the piece over a part of the step is bounded in two ways. Rooms change no faster than places, so its middle speaks for all of it.
     /// And no place is deeper than its distance from the segment that is nearest to the middle, which is greatest at a corner of the part.
-    fn depth(&self, swept: &Swept<'_>) -> f64 {
+    fn depth(&self, swept: &SweptPiece<'_>) -> f64 {
         let between = |a: Point, b: Point, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
         let (before, after, turned) = swept.unslid();
         let at = |part: f64, moment: f64| {
@@ -520,7 +520,7 @@ mod tests {
     }
 
     fn room(before: [Point; 2], after: [Point; 2]) -> f64 {
-        yard().swept(&Swept { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2] }, false).0
+        yard().swept(&SweptPiece { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2] }, false).0
     }
 
     #[test]
@@ -556,7 +556,7 @@ mod tests {
                 }
             }
             let depth = |enough: f64| {
-                let swept = Swept { before, after, most: 0.0, enough, stray: &|_| [0.0; 2] };
+                let swept = SweptPiece { before, after, most: 0.0, enough, stray: &|_| [0.0; 2] };
                 ground.depth(&swept)
             };
             // What slides is prolonged, and the prolonged piece goes aside and turns, too.
@@ -575,7 +575,7 @@ mod tests {
     fn what_moves_along_an_edge_costs_no_leeway() {
         let (before, after) = ([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
         let stray = |towards: Point| [0.3 * towards[1].abs() + 0.1 * towards[0].abs(); 2];
-        let piece = Swept { before, after, most: 0.4, enough: FAR_M, stray: &stray };
+        let piece = SweptPiece { before, after, most: 0.4, enough: FAR_M, stray: &stray };
         let (room, leeway) = yard().swept(&piece, false);
         assert!((room - 1.5).abs() < 1e-12 && (leeway - 1.4).abs() < 1e-12, "{room} {leeway}");
     }
@@ -615,7 +615,7 @@ mod tests {
             let corners = [before[0], before[1], after[1], after[0]];
             let gaps: Option<Vec<Point>> =
                 area.segments().map(|s| Segment::new(s).gap(&corners, &pairs(&corners))).collect();
-            let swept = Swept { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2] };
+            let swept = SweptPiece { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2] };
             let (room, leeway) = ground.swept(&swept, false);
             let Some(gaps) = gaps else {
                 assert!(room <= 0.0 && leeway <= -0.3, "{at:?}: {room} {leeway}");

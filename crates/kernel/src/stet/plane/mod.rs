@@ -53,7 +53,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
         let k = station - head;
         let stand = Stand::read::<REFINED>(body, block, refined, head, k);
         for (foot, point) in feet.iter_mut().zip(&body.points) {
-            *foot = walked(track, *foot + usize::from(station > first), stand.place(point.spot.ahead, 0.0));
+            *foot = walked(track, *foot + usize::from(station > first), stand.place(point.on_axis.ahead, 0.0));
         }
         if CERTIFY {
             if alone {

@@ -5,7 +5,7 @@ use crate::stet::model::MAX_POINTS;
 use crate::stet::track::Track;
 
 use super::areas::Areas;
-use super::ground::{FAR_OUTSIDE_M, Point, Swept, apart};
+use super::ground::{FAR_OUTSIDE_M, Point, SweptPiece, apart};
 use super::rooms::Rooms;
 use super::stand::Stand;
 
@@ -73,9 +73,9 @@ impl<'a> Passage<'a> {
         let areas = &track.areas;
         let mut passage =
             Self { areas, points, half_width, before, after, turn, way, across, heading, most: 0.0, slide: None };
-        let [front, rear] = [0, points.len() - 1].map(|index| points[index].spot.ahead);
+        let [front, rear] = [0, points.len() - 1].map(|index| points[index].on_axis.ahead);
         // Between two points what a place may move is convex.
-        let most = points.iter().zip(&passage.across).map(|(point, across)| passage.most(*across, point.spot.ahead));
+        let most = points.iter().zip(&passage.across).map(|(point, across)| passage.most(*across, point.on_axis.ahead));
         passage.most = most.fold(0.0, f64::max) + passage.sag(front).max(passage.sag(rear));
         passage.slide =
             passage.slide([front, rear]).filter(|_| areas.count(before.head, before.head + 1).nth(1).is_none());
@@ -103,16 +103,16 @@ impl<'a> Passage<'a> {
     fn across_at(&self, ahead: f64) -> f64 {
         let points = self.points;
         let last = points.len() - 1;
-        let (front, rear) = (points[0].spot.ahead, points[last].spot.ahead);
+        let (front, rear) = (points[0].on_axis.ahead, points[last].on_axis.ahead);
         if ahead >= front {
             return self.across[0] + (ahead - front) * self.heading;
         }
         if ahead <= rear {
             return self.across[last] + (rear - ahead) * self.heading;
         }
-        let index = (1..last).find(|&index| points[index].spot.ahead <= ahead).unwrap_or(last);
+        let index = (1..last).find(|&index| points[index].on_axis.ahead <= ahead).unwrap_or(last);
         let behind = &points[index];
-        let share = (ahead - behind.spot.ahead) / behind.gap.max(NO_GAP_M);
+        let share = (ahead - behind.on_axis.ahead) / behind.gap.max(NO_GAP_M);
         self.across[index] + (self.across[index - 1] - self.across[index]) * share
     }
 
@@ -152,7 +152,7 @@ impl<'a> Passage<'a> {
     }
 
     /// Room and leeway of a piece that has these ends at both stations: the greatest over the areas.
-    fn room(&self, piece: &Swept<'_>, inside: bool) -> (f64, f64) {
+    fn room(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
         let inside = inside && self.areas.count(self.before.head, self.before.head + 1).nth(1).is_none();
         let rooms = self.areas.count(self.before.head, self.before.head + 1).map(|ground| match ground {
             Some(ground) => ground.swept(piece, inside),
@@ -165,7 +165,7 @@ impl<'a> Passage<'a> {
     /// in the step before. A leeway of at least `enough` need not be exact.
     fn edge(&self, index: usize, side: usize, known: f64, enough: f64) -> (f64, f64) {
         let half = if side == 0 { self.half_width } else { -self.half_width };
-        let ahead = self.points[index].spot.ahead;
+        let ahead = self.points[index].on_axis.ahead;
         let ends = |stand: &Stand| [half, 0.0].map(|aside| stand.place(ahead, aside));
         let sag = self.sag(ahead);
         let most = self.most(self.across[index], ahead) + sag;
@@ -175,13 +175,13 @@ impl<'a> Passage<'a> {
             return (left, left - most);
         }
         let stray = |towards: Point| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
-        self.room(&Swept { before, after, most, enough, stray: &stray }, known > 0.0)
+        self.room(&SweptPiece { before, after, most, enough, stray: &stray }, known > 0.0)
     }
 
     /// Whether something may already be under the body when the first step of an area begins.
     fn blocked(&self) -> bool {
         let (half, last) = (self.half_width, self.points.len() - 1);
-        let (front, rear) = (self.points[0].spot.ahead, self.points[last].spot.ahead);
+        let (front, rear) = (self.points[0].on_axis.ahead, self.points[last].on_axis.ahead);
         let corners = [(rear, -half), (front, -half), (front, half), (rear, half)];
         let outline = corners.map(|(ahead, aside)| self.before.place(ahead, aside));
         self.areas
@@ -227,7 +227,7 @@ impl<'a> Passage<'a> {
         }
         let (index, aside) = (piece.index, if piece.side == 0 { self.half_width } else { -self.half_width });
         let lowest = &mut lowest[piece.side];
-        let [ahead, behind] = [index - 1, index].map(|point| self.points[point].spot.ahead);
+        let [ahead, behind] = [index - 1, index].map(|point| self.points[point].on_axis.ahead);
         let sag = self.sag(ahead).max(self.sag(behind));
         let most = piece.ends.map(|ahead| self.most(self.across_at(ahead), ahead));
         let most = most[0].max(most[1]) + sag;
@@ -238,7 +238,7 @@ impl<'a> Passage<'a> {
             left
         } else {
             let stray = |towards: Point| piece.ends.map(|ahead| self.stray(towards, ahead, aside) + sag);
-            let swept = Swept { before, after, most, enough: lowest.leeway, stray: &stray };
+            let swept = SweptPiece { before, after, most, enough: lowest.leeway, stray: &stray };
             let (room, leeway) = self.room(&swept, rooms.before[number] > 0.0);
             if leeway < lowest.leeway {
                 rooms.critical[piece.side] = number;

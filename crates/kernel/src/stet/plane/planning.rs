@@ -22,7 +22,7 @@ pub(super) fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize;
     for index in 0..body.points.len() {
         let before = index.saturating_sub(1);
         let (ahead, behind) = (&body.points[before], &body.points[index]);
-        let (from, to) = (ahead.spot.ahead, behind.spot.ahead);
+        let (from, to) = (ahead.on_axis.ahead, behind.on_axis.ahead);
         let parts = ((from - to) / PIECE_M).ceil().max(1.0);
         for (side, aside) in [body.half_width, -body.half_width].into_iter().enumerate() {
             // The first part begins where the one ahead ends. The first point is a place by itself.
@@ -37,7 +37,7 @@ pub(super) fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize;
                 let Some(room) = room else { continue };
                 let near = if share < 0.5 { before } else { index };
                 let point = &body.points[near];
-                let leeway = room - point.spot.gain;
+                let leeway = room - point.on_axis.gain;
                 if minima.counted.contains(&stand.head) {
                     minima.floor = minima.floor.min(leeway);
                 }

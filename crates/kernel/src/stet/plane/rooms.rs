@@ -8,7 +8,7 @@ use super::ground::{FAR_OUTSIDE_M, Point, apart};
 pub(super) const PIECE_M: f64 = 1.4;
 
 /// A piece of a side between two body points.
-pub(super) struct Piece {
+pub(super) struct SidePiece {
     /// The body point behind it, and the one near it.
     pub(super) index: usize,
     pub(super) point: usize,
@@ -22,7 +22,7 @@ pub(super) struct Piece {
 /// along its side goes where it was itself and the piece ahead of it, and loses what it moves aside. So most pieces need not be
 /// measured in most steps.
 pub(in crate::stet) struct Rooms {
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<SidePiece>,
     pub(super) rooms: Vec<f64>,
     /// The rooms in the step before.
     pub(super) before: Vec<f64>,
@@ -47,7 +47,7 @@ impl Rooms {
                 let [from, to] = [part as f64 / parts, (part + 1) as f64 / parts];
                 let ends = [from, to].map(|share| ahead + (behind - ahead) * share);
                 let point = if from + to < 1.0 { index - 1 } else { index };
-                pieces.extend([0, 1].map(|side| Piece { index, point, ends, side }));
+                pieces.extend([0, 1].map(|side| SidePiece { index, point, ends, side }));
             }
         }
         Self {
@@ -100,7 +100,7 @@ impl Rooms {
     }
 }
 
-impl Piece {
+impl SidePiece {
     fn length(&self) -> f64 {
         self.ends[0] - self.ends[1]
     }

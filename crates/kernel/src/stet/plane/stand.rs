@@ -40,13 +40,13 @@ impl Stand {
         let a = (extra_axle + extra_coupling) * body.inverse_length + body.heading + remainder;
         let mut across = [0.0; MAX_POINTS];
         for (index, point) in body.points.iter().enumerate() {
-            let spot = &point.spot;
+            let on_axis = &point.on_axis;
             let first_order = if REFINED {
                 refined[index * BLOCK + k]
             } else {
-                spot.gain + extra_axle * spot.from_axle + extra_coupling * spot.from_coupling
+                on_axis.gain + extra_axle * on_axis.from_axle + extra_coupling * on_axis.from_coupling
             };
-            across[index] = first_order + spot.ahead.abs() * remainder;
+            across[index] = first_order + on_axis.ahead.abs() * remainder;
         }
         Self {
             head: head + k,

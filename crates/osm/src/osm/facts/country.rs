@@ -13,16 +13,16 @@ use crate::osm::facts::rules::{Rules, RulesError, country_code};
 
 /// Country rules at a position, independent of tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Place {
+pub struct Jurisdiction {
     /// ISO 3166-1 alpha-2 code; `ZZ` if there is none.
     pub country: [u8; 2],
     /// Whether traffic keeps to the left.
     pub left_hand_traffic: bool,
 }
 
-impl Place {
+impl Jurisdiction {
     /// No country known; traffic keeps to the right.
-    pub const NOWHERE: Place = Place { country: *b"ZZ", left_hand_traffic: false };
+    pub const NOWHERE: Jurisdiction = Jurisdiction { country: *b"ZZ", left_hand_traffic: false };
 }
 
 /// Why positions cannot be looked up.
@@ -100,29 +100,29 @@ impl Countries {
 
     /// Country and driving side of a position. Overrides take precedence.
     #[must_use]
-    pub fn place(&self, position: LonLat) -> Place {
+    pub fn jurisdiction(&self, position: LonLat) -> Jurisdiction {
         let found = match self.country {
             Some(country) => {
                 let left = std::str::from_utf8(&country).is_ok_and(|code| self.rules.drives_on_the_left(code));
-                Place { country, left_hand_traffic: left }
+                Jurisdiction { country, left_hand_traffic: left }
             }
             None => self.look_up(position),
         };
-        Place { left_hand_traffic: self.left_hand_traffic.unwrap_or(found.left_hand_traffic), ..found }
+        Jurisdiction { left_hand_traffic: self.left_hand_traffic.unwrap_or(found.left_hand_traffic), ..found }
     }
 
-    fn look_up(&self, position: LonLat) -> Place {
+    fn look_up(&self, position: LonLat) -> Jurisdiction {
         let (lon, lat) = position.degrees();
-        let Ok(at) = LatLon::new(lat, lon) else { return Place::NOWHERE };
+        let Ok(at) = LatLon::new(lat, lon) else { return Jurisdiction::NOWHERE };
         // Smallest region first: US-VI (left) before US (right), HK before CN.
         let ids = self.boundaries.ids(at);
-        let Some(country) = ids.iter().find_map(|id| country_code(id.get(..2)?)) else { return Place::NOWHERE };
+        let Some(country) = ids.iter().find_map(|id| country_code(id.get(..2)?)) else { return Jurisdiction::NOWHERE };
         let known = |id: &&str| {
             let left = self.rules.drives_on_the_left(id);
             (left || self.rules.drives_on_the_right(id)).then_some(left)
         };
         let left_hand_traffic = ids.iter().find_map(known).unwrap_or(false);
-        Place { country, left_hand_traffic }
+        Jurisdiction { country, left_hand_traffic }
     }
 }
 
@@ -150,8 +150,8 @@ mod tests {
             ("Luanda", 13.24, -8.84, b"AO", false),
             ("the Atlantic", -30.0, 40.0, b"ZZ", false),
         ] {
-            let place = countries.place(at(lon, lat));
-            assert_eq!((&place.country, place.left_hand_traffic), (country, left), "{name}");
+            let jurisdiction = countries.jurisdiction(at(lon, lat));
+            assert_eq!((&jurisdiction.country, jurisdiction.left_hand_traffic), (country, left), "{name}");
         }
     }
 
@@ -266,8 +266,8 @@ mod tests {
     fn every_territory_that_keeps_left_does() {
         let countries = Countries::load().unwrap();
         for (name, lon, lat, country) in LEFT {
-            let place = countries.place(at(*lon, *lat));
-            assert_eq!((&place.country, place.left_hand_traffic), (*country, true), "{name}");
+            let jurisdiction = countries.jurisdiction(at(*lon, *lat));
+            assert_eq!((&jurisdiction.country, jurisdiction.left_hand_traffic), (*country, true), "{name}");
         }
         // None is missing.
         for code in countries.rules().left.iter().filter(|code| code.len() == 2) {
@@ -294,7 +294,7 @@ mod tests {
             ("Luanda", 13.24, -8.84),
             ("Yangon", 96.16, 16.8),
         ] {
-            assert!(!countries.place(at(lon, lat)).left_hand_traffic, "{name}");
+            assert!(!countries.jurisdiction(at(lon, lat)).left_hand_traffic, "{name}");
         }
     }
 
@@ -321,9 +321,9 @@ mod tests {
     #[test]
     fn overrides_come_first() {
         let nz = Countries::load().unwrap().in_country("nz").unwrap();
-        assert_eq!(nz.place(at(8.69, 49.41)), Place { country: *b"NZ", left_hand_traffic: true });
+        assert_eq!(nz.jurisdiction(at(8.69, 49.41)), Jurisdiction { country: *b"NZ", left_hand_traffic: true });
         let odd = nz.driving_on_the_left(false);
-        assert_eq!(odd.place(at(8.69, 49.41)), Place { country: *b"NZ", left_hand_traffic: false });
+        assert_eq!(odd.jurisdiction(at(8.69, 49.41)), Jurisdiction { country: *b"NZ", left_hand_traffic: false });
         assert!(Countries::load().unwrap().in_country("Germany").is_err());
     }
 }

@@ -6,7 +6,7 @@
 //! says otherwise. If tags contradict each other, the narrower reading counts. A width counts however small it is: no
 //! assumed width replaces it.
 
-use crate::osm::facts::country::Place;
+use crate::osm::facts::country::Jurisdiction;
 use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
 use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
 use crate::osm::facts::section::{Decimetres, Kerb, Mark, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
@@ -26,22 +26,27 @@ const LISTED_SLACK_M: f32 = 0.3;
 /// The cross sections of a way for travel along its node order and against it. `ring_radius_m` is the radius of the
 /// ring that a roundabout's way is part of, if known.
 #[must_use]
-pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64>, rules: &Rules) -> [CrossSection; 2] {
+pub fn cross_sections(
+    facts: &WayFacts,
+    jurisdiction: &Jurisdiction,
+    ring_radius_m: Option<f64>,
+    rules: &Rules,
+) -> [CrossSection; 2] {
     let class = rules.class(facts.class);
     let builder = Builder {
         tags: &facts.section,
         // A ramp has one lane unless tagged otherwise, whatever its class.
         class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
-        lane_m: untagged_lane_m(facts, place, rules),
+        lane_m: untagged_lane_m(facts, jurisdiction, rules),
         single_m: if facts.roundabout {
-            rules.ring_m(place.country, ring_radius_m)
+            rules.ring_m(jurisdiction.country, ring_radius_m)
         } else {
             rules.ramp_m(facts.class).filter(|_| facts.link)
         },
-        left_hand_traffic: place.left_hand_traffic,
+        left_hand_traffic: jurisdiction.left_hand_traffic,
         kerb_rule: rules.kerb,
     };
-    let one = |direction| builder.one_way(direction).section(direction, place.left_hand_traffic);
+    let one = |direction| builder.one_way(direction).section(direction, jurisdiction.left_hand_traffic);
     match facts.traffic() {
         Oneway::Forward => [one(Direction::Forward), NO_SECTION],
         Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
@@ -49,14 +54,14 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64
         Oneway::No => {
             let layout = builder.two_way();
             [Direction::Forward, Direction::Backward]
-                .map(|direction| layout.section(direction, place.left_hand_traffic))
+                .map(|direction| layout.section(direction, jurisdiction.left_hand_traffic))
         }
     }
 }
 
 /// The assumed width of a lane. Those of a narrow road of unknown width are no wider than a narrow road.
-fn untagged_lane_m(facts: &WayFacts, place: &Place, rules: &Rules) -> f32 {
-    let lane_m = rules.lane_m(facts.class, place.country);
+fn untagged_lane_m(facts: &WayFacts, jurisdiction: &Jurisdiction, rules: &Rules) -> f32 {
+    let lane_m = rules.lane_m(facts.class, jurisdiction.country);
     let narrow = facts.section.is(Mark::Narrow) && facts.section.carriageway.is_none();
     if narrow { lane_m.min(rules.kerb.narrow_m) } else { lane_m }
 }

@@ -9,7 +9,7 @@ mod score;
 use field::Field;
 use score::{Score, Scorer};
 
-use super::Reach;
+use super::LengthClass;
 use super::code::{PARAMETERS, PathCode};
 use super::corridors::TurnCorridors;
 use crate::vehicle::Vehicle;
@@ -66,7 +66,7 @@ impl<'a> Planner<'a> {
         let (a, b) = (from.point(from.node), to.point(to.node));
         let centre = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let apart_m = 0.5 * (a[0] - b[0]).hypot(a[1] - b[1]);
-        let field = Field::new(&made.opened(), centre, apart_m + AROUND_M + made.reach().longest_m());
+        let field = Field::new(&made.opened(), centre, apart_m + AROUND_M + made.length_class().longest_m());
         Self { made, field }
     }
 
@@ -92,9 +92,9 @@ impl<'a> Planner<'a> {
     }
 
     fn hopeless_m(&self) -> f64 {
-        match self.made.reach() {
-            Reach::Short => HOPELESS_M[0],
-            Reach::Long => HOPELESS_M[1],
+        match self.made.length_class() {
+            LengthClass::Short => HOPELESS_M[0],
+            LengthClass::Long => HOPELESS_M[1],
         }
     }
 

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 
 /// Width of the own lane in centimetres and its evidence, of the direction, and of the carriageway with its evidence.
-fn own(text: &str, place: &Place) -> String {
-    let [forward, backward] = sections(text, place);
+fn own(text: &str, jurisdiction: &Jurisdiction) -> String {
+    let [forward, backward] = sections(text, jurisdiction);
     let section = if forward == backward || forward.carriageway.is_some() { forward } else { backward };
     let show =
         |strip: Option<Strip>| strip.map_or("-".to_owned(), |s| format!("{:.0} {:?}", s.width_m() * 100.0, s.source));
@@ -100,7 +100,7 @@ fn the_lane_at_the_kerb_is_the_own_one_on_either_side() {
         ("lanes=3 lanes:bus=1 width:lanes=3.5|3|2.5", "300 Tagged", "300 Tagged"),
     ] {
         let text = format!("{ONE_WAY} {tags}");
-        let lane = |place| own(&text, place).split(" | ").next().unwrap_or_default().to_owned();
+        let lane = |jurisdiction| own(&text, jurisdiction).split(" | ").next().unwrap_or_default().to_owned();
         assert_eq!((lane(&RIGHT).as_str(), lane(&LEFT).as_str()), (right, left), "{text}");
     }
 }
@@ -125,8 +125,8 @@ fn a_list_without_a_direction_covers_a_two_way_road() {
         ("lanes=2 width:lanes:backward=2.3", ["300 FromLanes", "230 Tagged"], ["300 FromLanes", "230 Tagged"]),
     ] {
         let text = format!("highway=secondary {tags}");
-        for (place, expected) in [(&RIGHT, right), (&LEFT, left)] {
-            let got = sections(&text, place).map(|section| {
+        for (jurisdiction, expected) in [(&RIGHT, right), (&LEFT, left)] {
+            let got = sections(&text, jurisdiction).map(|section| {
                 section.lane.map_or("-".to_owned(), |s| format!("{:.0} {:?}", s.width_m() * 100.0, s.source))
             });
             assert_eq!(got, expected, "{text}");
@@ -223,7 +223,7 @@ proptest! {
         lanes in prop::collection::vec(prop::option::of(2..60_u32), 1..5), at in 0..5_usize, less in 1..40_u32, more in 0..3_u8,
         two_way: bool, left: bool, width in prop::option::of(20..150_u32),
     ) {
-        let place = if left { LEFT } else { RIGHT };
+        let jurisdiction = if left { LEFT } else { RIGHT };
         let at = at % lanes.len();
         let Some(before) = lanes[at] else { return Ok(()) };
         let mut smaller = lanes.clone();
@@ -238,7 +238,7 @@ proptest! {
         };
         let (great, small) = (text(&lanes), text(&smaller));
         // A list of two entries or more has an entry for the kerb only if it has one for each lane.
-        for (great_section, small_section) in sections(&great, &place).into_iter().zip(sections(&small, &place)) {
+        for (great_section, small_section) in sections(&great, &jurisdiction).into_iter().zip(sections(&small, &jurisdiction)) {
             let width_m = |section: CrossSection| section.lane.map_or(0.0, |lane| lane.width_m());
             prop_assume!(width.is_empty());
             prop_assert!(width_m(small_section) <= width_m(great_section) + 1e-5, "{great} {small}");

@@ -11,8 +11,8 @@ mod ways;
 
 use crate::osm::facts::*;
 
-const RIGHT: Place = Place { country: *b"ZZ", left_hand_traffic: false };
-const LEFT: Place = Place { country: *b"ZZ", left_hand_traffic: true };
+const RIGHT: Jurisdiction = Jurisdiction { country: *b"ZZ", left_hand_traffic: false };
+const LEFT: Jurisdiction = Jurisdiction { country: *b"ZZ", left_hand_traffic: true };
 
 /// Parses `highway=primary width=7` into tags.
 fn tags(text: &str) -> Vec<(&str, &str)> {
@@ -23,8 +23,8 @@ fn draft(text: &str) -> WayDraft<'_> {
     way_facts(&tags(text)).expect("a road")
 }
 
-fn sections(text: &str, place: &Place) -> [CrossSection; 2] {
-    cross_sections(&draft(text).facts, place, None, &Rules::builtin().unwrap())
+fn sections(text: &str, jurisdiction: &Jurisdiction) -> [CrossSection; 2] {
+    cross_sections(&draft(text).facts, jurisdiction, None, &Rules::builtin().unwrap())
 }
 
 /// Left and right edge in centimetres, and the evidence.
@@ -39,8 +39,8 @@ fn check(text: &str, expected: &str) {
     check_at(text, &RIGHT, expected);
 }
 
-fn check_at(text: &str, place: &Place, expected: &str) {
-    let [forward, backward] = sections(text, place);
+fn check_at(text: &str, jurisdiction: &Jurisdiction, expected: &str) {
+    let [forward, backward] = sections(text, jurisdiction);
     let carriageway = forward.carriageway.or(backward.carriageway);
     let got = [forward.lane, backward.lane, forward.direction, carriageway].map(show).join(" | ");
     assert_eq!(got, expected, "{text}");

@@ -144,9 +144,9 @@ proptest! {
 
     #[test]
     fn strips_are_sound_whatever_the_tags(tags in some_tags(), left_hand_traffic: bool) {
-        let place = Place { left_hand_traffic, ..RIGHT };
+        let jurisdiction = Jurisdiction { left_hand_traffic, ..RIGHT };
         let facts = way_facts(&borrowed(&tags)).unwrap().facts;
-        for section in cross_sections(&facts, &place, None, &Rules::builtin().unwrap()) {
+        for section in cross_sections(&facts, &jurisdiction, None, &Rules::builtin().unwrap()) {
             let strips = [section.lane, section.direction, section.carriageway];
             for strip in strips.into_iter().flatten() {
                 prop_assert!(strip.left_m.is_finite() && strip.right_m.is_finite());

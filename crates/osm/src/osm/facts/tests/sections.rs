@@ -13,8 +13,8 @@ fn untagged_roads_have_assumed_lanes() {
 #[test]
 fn rings_and_ramps_of_one_lane_are_wider_than_a_lane() {
     let carriageway = |text: &str, country: &[u8; 2], ring_radius_m| {
-        let place = Place { country: *country, left_hand_traffic: false };
-        let [forward, _] = cross_sections(&draft(text).facts, &place, ring_radius_m, &Rules::builtin().unwrap());
+        let jurisdiction = Jurisdiction { country: *country, left_hand_traffic: false };
+        let [forward, _] = cross_sections(&draft(text).facts, &jurisdiction, ring_radius_m, &Rules::builtin().unwrap());
         show(forward.carriageway)
     };
     let ring = "highway=tertiary junction=roundabout";
@@ -203,8 +203,8 @@ fn lanes_with_turns_are_counted_where_lanes_are_not() {
     // One of the lanes may be the cycle lane.
     let ambiguous = "highway=primary oneway=yes cycleway:right=lane";
     let carriageway = |text: &str| {
-        let place = Place { country: *b"DE", left_hand_traffic: false };
-        let [forward, _] = cross_sections(&draft(text).facts, &place, None, &Rules::builtin().unwrap());
+        let jurisdiction = Jurisdiction { country: *b"DE", left_hand_traffic: false };
+        let [forward, _] = cross_sections(&draft(text).facts, &jurisdiction, None, &Rules::builtin().unwrap());
         show(forward.carriageway)
     };
     assert_eq!(carriageway(&format!("{ambiguous} turn:lanes=left|through")), carriageway(ambiguous));

@@ -13,14 +13,14 @@ use super::model::Model;
 use super::plan::{self, Unplanned};
 use super::plane::Grounds;
 use super::results::{Certificate, SpanResult};
-use super::ride::{Refining, Ride, Wanted};
+use super::ride::{Refining, Ride, SweepScope};
 use super::shift::Plan;
 use super::spans;
 use super::sweep::sweep;
 use super::track::Track;
 
 /// A vehicle with its plan, and its sweeps.
-pub(super) struct Swept<'m> {
+pub(super) struct Sweeps<'m> {
     pub(super) track: Rc<Track>,
     pub(super) model: &'m Model,
     pub(super) plan: Plan,
@@ -41,14 +41,14 @@ pub(super) struct Swept<'m> {
 }
 
 /// The sweeps of several vehicles along their plans, eight rides at a time.
-pub(super) fn measure(all: &mut [Swept<'_>], marks: Marks, stop: &Stop) {
-    let mut rest: Vec<&mut Swept<'_>> = Vec::with_capacity(all.len());
-    for swept in all {
-        match (marks, swept.spans) {
-            (Marks::Ends, [only]) if !swept.track.areas.is_empty() => {
-                swept.measure_least(only, f64::NEG_INFINITY, f64::INFINITY);
+pub(super) fn measure(all: &mut [Sweeps<'_>], marks: Marks, stop: &Stop) {
+    let mut rest: Vec<&mut Sweeps<'_>> = Vec::with_capacity(all.len());
+    for sweeps in all {
+        match (marks, sweeps.spans) {
+            (Marks::Ends, [only]) if !sweeps.track.areas.is_empty() => {
+                sweeps.measure_least(only, f64::NEG_INFINITY, f64::INFINITY);
             }
-            _ => rest.push(swept),
+            _ => rest.push(sweeps),
         }
     }
     measure_spans(&mut rest, marks, stop);
@@ -56,50 +56,50 @@ pub(super) fn measure(all: &mut [Swept<'_>], marks: Marks, stop: &Stop) {
 
 /// The sweeps of several vehicles, for all of their spans. Only a certificate that gives the leeway of each station looks at stations
 /// that no span rests on.
-fn measure_spans(all: &mut [&mut Swept<'_>], marks: Marks, stop: &Stop) {
+fn measure_spans(all: &mut [&mut Sweeps<'_>], marks: Marks, stop: &Stop) {
     let touched = blocks(all, |_, _| true);
     let rides: Vec<Ride<'_>> = all
         .iter()
         .zip(&touched)
-        .map(|(swept, touched)| {
+        .map(|(sweeps, touched)| {
             let blocks = matches!(marks, Marks::Ends).then_some(touched.as_slice());
-            swept.ride(1.0, Wanted { blocks, ..Wanted::ALL })
+            sweeps.ride(1.0, SweepScope { blocks, ..SweepScope::ALL })
         })
         .collect();
     let full = sweep::<true>(&rides, stop);
-    all.iter_mut().zip(full).for_each(|(swept, full)| swept.full = full);
+    all.iter_mut().zip(full).for_each(|(sweeps, full)| sweeps.full = full);
 
-    let in_doubt = blocks(all, |swept, span| swept.loose(span) && !swept.has_room(span));
-    let nominal = sweep_where::<false>(all, &in_doubt, |_| (1.0, Wanted::PLAIN), stop);
-    all.iter_mut().zip(nominal).for_each(|(swept, nominal)| swept.nominal = nominal);
+    let in_doubt = blocks(all, |sweeps, span| sweeps.loose(span) && !sweeps.has_room(span));
+    let nominal = sweep_where::<false>(all, &in_doubt, |_| (1.0, SweepScope::PLAIN), stop);
+    all.iter_mut().zip(nominal).for_each(|(sweeps, nominal)| sweeps.nominal = nominal);
 
-    let near = blocks(all, Swept::worth);
-    let refined = sweep_where::<true>(all, &near, |swept| (1.0, swept.refining()), stop);
-    all.iter_mut().zip(refined).for_each(|(swept, refined)| swept.refined = refined);
+    let near = blocks(all, Sweeps::worth);
+    let refined = sweep_where::<true>(all, &near, |sweeps| (1.0, sweeps.refining()), stop);
+    all.iter_mut().zip(refined).for_each(|(sweeps, refined)| sweeps.refined = refined);
 
     // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ.
-    let failing = blocks(all, |swept, span| swept.at_full(span).fails());
-    let alike = |swept| if Swept::is_refined(swept) { swept.refining() } else { Wanted::ALL };
-    let least = sweep_where::<true>(all, &failing, |swept| (0.0, alike(swept)), stop);
-    all.iter_mut().zip(least).for_each(|(swept, least)| swept.least = least);
+    let failing = blocks(all, |sweeps, span| sweeps.at_full(span).fails());
+    let alike = |sweeps| if Sweeps::is_refined(sweeps) { sweeps.refining() } else { SweepScope::ALL };
+    let least = sweep_where::<true>(all, &failing, |sweeps| (0.0, alike(sweeps)), stop);
+    all.iter_mut().zip(least).for_each(|(sweeps, least)| sweeps.least = least);
 }
 
 /// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
-fn blocks<'m>(all: &[&mut Swept<'m>], meant: impl Fn(&Swept<'m>, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
-    all.iter().map(|swept| swept.blocks(|span| meant(swept, span))).collect()
+fn blocks<'m>(all: &[&mut Sweeps<'m>], meant: impl Fn(&Sweeps<'m>, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
+    all.iter().map(|sweeps| sweeps.blocks(|span| meant(sweeps, span))).collect()
 }
 
 /// Sweeps some blocks of each vehicle of which any are asked for, at the γ and with the refining that `how` says.
 fn sweep_where<'s, const CERTIFY: bool>(
-    all: &'s [&mut Swept<'_>],
+    all: &'s [&mut Sweeps<'_>],
     blocks: &'s [Vec<bool>],
-    how: impl Fn(&'s Swept<'_>) -> (f64, Wanted<'s>),
+    how: impl Fn(&'s Sweeps<'_>) -> (f64, SweepScope<'s>),
     stop: &Stop,
 ) -> Vec<Option<Minima>> {
     let asked: Vec<usize> = (0..all.len()).filter(|&i| blocks[i].contains(&true)).collect();
     let ride = |&i: &usize| {
-        let (shrink, wanted) = how(&*all[i]);
-        all[i].ride(shrink, Wanted { blocks: Some(&blocks[i]), ..wanted })
+        let (shrink, scope) = how(&*all[i]);
+        all[i].ride(shrink, SweepScope { blocks: Some(&blocks[i]), ..scope })
     };
     let rides: Vec<Ride<'_>> = asked.iter().map(ride).collect();
     let mut out = vec![None; all.len()];
@@ -110,18 +110,18 @@ fn sweep_where<'s, const CERTIFY: bool>(
 /// All leeways along the centreline at γ = 1, refined by the adjoint where that is worth its time.
 fn centred(track: &Track, model: &Model, stop: &Stop) -> Minima {
     let shift = vec![0.0; track.len()];
-    let swept = |wanted| {
-        let ride = Ride { track, model, shrink: 1.0, shift: &shift, wanted };
+    let swept = |scope| {
+        let ride = Ride { track, model, shrink: 1.0, shift: &shift, scope };
         sweep::<true>(&[ride], stop).pop().unwrap_or_default()
     };
-    let full = swept(Wanted::ALL);
+    let full = swept(SweepScope::ALL);
     if full.loose.iter().all(|&unit| unit == usize::MAX) {
         return full;
     }
-    swept(Wanted { refining: Refining::From(&full.loose), ..Wanted::ALL })
+    swept(SweepScope { refining: Refining::From(&full.loose), ..SweepScope::ALL })
 }
 
-impl<'m> Swept<'m> {
+impl<'m> Sweeps<'m> {
     /// Before any sweep along the plan.
     pub(super) fn ready(
         track: Rc<Track>,
@@ -157,9 +157,9 @@ impl<'m> Swept<'m> {
     ) -> Self {
         let track = marked(corridor, model, spans, marks, &Grounds::default());
         let plan = plan(&track);
-        let mut swept = Self::ready(track, model, plan, spans, stop);
-        measure(std::slice::from_mut(&mut swept), marks, stop);
-        swept
+        let mut sweeps = Self::ready(track, model, plan, spans, stop);
+        measure(std::slice::from_mut(&mut sweeps), marks, stop);
+        sweeps
     }
 
     /// Along the best plan that keeps to the centreline near the stations `held`.
@@ -177,13 +177,13 @@ impl<'m> Swept<'m> {
         })
     }
 
-    pub(super) fn ride<'r>(&'r self, shrink: f64, wanted: Wanted<'r>) -> Ride<'r> {
-        Ride { track: &self.track, model: self.model, shrink, shift: &self.shift, wanted }
+    pub(super) fn ride<'r>(&'r self, shrink: f64, scope: SweepScope<'r>) -> Ride<'r> {
+        Ride { track: &self.track, model: self.model, shrink, shift: &self.shift, scope }
     }
 
-    /// One sweep, as `wanted`.
-    pub(super) fn swept<const CERTIFY: bool>(&self, shrink: f64, wanted: Wanted<'_>) -> Minima {
-        sweep::<CERTIFY>(&[self.ride(shrink, wanted)], self.stop).pop().unwrap_or_default()
+    /// One sweep of a scope.
+    pub(super) fn sweep_once<const CERTIFY: bool>(&self, shrink: f64, scope: SweepScope<'_>) -> Minima {
+        sweep::<CERTIFY>(&[self.ride(shrink, scope)], self.stop).pop().unwrap_or_default()
     }
 
     /// The sweeps for all spans.
@@ -269,8 +269,8 @@ impl<'m> Swept<'m> {
     }
 
     /// All leeways, by the adjoint where the filter is loose at γ = 1.
-    fn refining(&self) -> Wanted<'_> {
-        Wanted { refining: Refining::From(&self.full.loose), ..Wanted::ALL }
+    fn refining(&self) -> SweepScope<'_> {
+        SweepScope { refining: Refining::From(&self.full.loose), ..SweepScope::ALL }
     }
 
     fn is_refined(&self) -> bool {
