@@ -24,7 +24,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Query
 ///
 /// ```
-/// # let (_folder, path) = netcert_testing::documentation::demo_region(false);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region();
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;
 /// use netcert::store::QueryOptions;
@@ -46,7 +46,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Route
 ///
 /// ```
-/// # let (_folder, path) = netcert_testing::documentation::demo_region(true);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region_with_turns();
 /// # let [from, to] = netcert_testing::documentation::two_places(&path);
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;
@@ -72,7 +72,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # Explain
 ///
 /// ```
-/// # let (_folder, path) = netcert_testing::documentation::demo_region(false);
+/// # let (_folder, path) = netcert_testing::documentation::demo_region();
 /// use netcert::explain::words;
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;

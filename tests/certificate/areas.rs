@@ -4,7 +4,7 @@
 
 use netcert_testing::catalogue::catalogued;
 
-use netcert::check::{Chain, SpanClaim, Subject, Weight, shift};
+use netcert::check::{Chain, Reading, SpanClaim, Subject, Weight, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
@@ -164,7 +164,7 @@ fn the_second_program_confirms_turns_and_refutes_five_centimetres_more() {
             let corridor = crossing.corridor(&way, &vehicle);
             let (claim, plan) = planned(&corridor, &vehicle)?;
             let chain = Chain::new(&vehicle);
-            let subject = Subject::new(&chain, &corridor, shift(&plan), true).unwrap();
+            let subject = Subject::new(&chain, &corridor, shift(&plan), Reading::Lenient).unwrap();
             let more = SpanClaim { rsc_m: claim.rsc_m.map(|rsc_m| rsc_m + 0.05), ..claim.clone() };
             let [own, refuted] = [&claim, &more].map(|claim| {
                 let found = subject.check(std::slice::from_ref(claim)).remove(0);

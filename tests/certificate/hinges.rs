@@ -1,7 +1,7 @@
 //! Hinge margins where a bend begins and ends between two stations (docs/proof.md, section 10). Curvature that is linear from station to
 //! station does not lead to the next station there. The course is then steepest between stations.
 
-use netcert::check::{Chain, SpanClaim, Subject, shift};
+use netcert::check::{Chain, Reading, SpanClaim, Subject, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
@@ -85,7 +85,7 @@ fn a_hinge_margin_is_confirmed_where_a_bend_ends_between_stations() {
                 shrink: result.shrink,
                 limiting: None,
             };
-            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), false).unwrap();
+            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
             let found = subject.check(std::slice::from_ref(&claim)).remove(0);
             assert!(found.is_empty(), "{id}, {name}: {claim:?}: {found:?}");
             let more = SpanClaim { hinge_margin_rad: claim.hinge_margin_rad.map(|rad| rad + 0.03), ..claim };
@@ -119,7 +119,7 @@ fn spare(vehicle: &Vehicle, bends: &Bends) -> (f64, String) {
                 Some(ahead) => (wrapped(headings[hinge] - headings[ahead]), 0.0),
                 None => (-dot(moved, left_of(u)).atan2(dot(moved, u)), vehicle.tracking_heading_rad),
             };
-            let reach = hinge_kernel(&drive, &nominal, &calm, (step, memory), hinge, fold.signum()).reach_m(&bounds);
+            let reach = hinge_kernel(&drive, &nominal, &calm, step, memory, hinge, fold.signum()).reach_m(&bounds);
             let spare = unit.max_articulation_rad - (fold.abs() + course_rad + reach) - claim.hinge_margin_rad;
             if spare < least.0 {
                 let at_m = (step - path.span_of_vertex(0)) as f64 * fine_m;

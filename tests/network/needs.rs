@@ -11,7 +11,7 @@ use netcert::reporter::Silent;
 use netcert::rows::EdgeCertificate;
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
-use netcert::turns::{LengthClass, StrokeLine, turn_facts, turn_on};
+use netcert::turns::{LengthClass, StrokeLine, TurnEdges, turn_facts, turn_on};
 use netcert::verdict::{UnknownReason, UnsafeReason, Verdict};
 
 use netcert_testing::catalogue::catalogued;
@@ -176,7 +176,14 @@ fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
         let mut network = region.network.clone();
         let edge = |edge: u32| &region.network.edges[edge as usize];
         network.site.set_kerb(edge(from).to_node, Some([edge(from), edge(to)]), radius_m);
-        let made = turn_on(&network, (turn.movement, &[]), &line, settings.policy, &settings.turn_params(), reach);
+        let made = turn_on(
+            &network,
+            TurnEdges { movement: turn.movement, through: &[] },
+            &line,
+            settings.policy,
+            &settings.turn_params(),
+            reach,
+        );
         let (_, result) = best_of(&made.unwrap(), &[model], &settings.stet).pop().flatten().unwrap();
         assert!(result.safe(), "turn {}: {radius_m} m, {result:?}", turn.id);
         assert!(turn.kerb_radius_m.is_some_and(|has_m| has_m < radius_m));

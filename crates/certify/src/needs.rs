@@ -339,8 +339,7 @@ impl TurnCase<'_> {
     /// Whether the turn is safe on one of its paths.
     fn is_safe(&self, params: &TurnParams, line: &LineOf<'_>) -> bool {
         let Some(reach) = LengthClass::of(&self.model.vehicle) else { return false };
-        let over = (self.turn.movement, &self.turn.through[..]);
-        let made = turn_on(self.network, over, line, self.settings.policy, params, reach).ok();
+        let made = turn_on(self.network, self.turn.edges(), line, self.settings.policy, params, reach).ok();
         made.is_some_and(|made| fits(&made, self.model, &self.settings.stet))
     }
 }

@@ -342,16 +342,15 @@ fn plan_as_on(
         let lacking =
             |v: &usize| lacks_room(&made.certificates[*v]) && LengthClass::of(&job.models[*v].vehicle) == Some(reach);
         let lacking: Vec<usize> = (0..job.models.len()).filter(lacking).collect();
-        let over = (turn.movement, &turn.through[..]);
         if lacking.is_empty() {
             continue;
         }
-        let Ok(narrow) = turn_on(narrower.network, over, &there, policy, params, reach) else { continue };
+        let Ok(narrow) = turn_on(narrower.network, turn.edges(), &there, policy, params, reach) else { continue };
         let models: Vec<&Model> = lacking.iter().map(|&v| &job.models[v]).collect();
         let mut wide = None;
         for (&v, found) in lacking.iter().zip(best_planned(&narrow, &models, &job.settings.stet)) {
             let Some(found) = found.filter(|found| found.result.safe() || found.nearly_fits()) else { continue };
-            let wide = wide.get_or_insert_with(|| turn_on(job.network, over, &here, policy, params, reach));
+            let wide = wide.get_or_insert_with(|| turn_on(job.network, turn.edges(), &here, policy, params, reach));
             let Ok(wide) = wide else { break };
             let (mut best, wide) = (None, LaidTurn::new(wide));
             let planned = Planned { code: found.path.code, score_m: 0.0, room_m: 0.0 };
@@ -409,7 +408,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         }
         let made = || {
             let (network, policy, params) = (job.network, job.settings.policy, &job.settings.turn_params());
-            turn_on(network, (turn.movement, &turn.through), &line, policy, params, reach)
+            turn_on(network, turn.edges(), &line, policy, params, reach)
         };
         match made() {
             Err(reason) => live.iter().for_each(|&v| out[v] = bare(Verdict::Unknown(reason))),

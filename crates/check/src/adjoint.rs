@@ -171,6 +171,7 @@ mod tests {
     use crate::chain::Chain;
     use crate::claim::SpanClaim;
     use crate::drawn::{chain, unit};
+    use crate::fit::Reading;
     use crate::plan;
     use crate::subject::Subject;
     use netcert_base::corridor::{Corridor, CurvatureProfile};
@@ -186,7 +187,7 @@ mod tests {
     /// The greatest RSC of the bend of 35 m that is confirmed, millimetres, and whether there are bounds everywhere before it.
     fn most_mm(chain: &Chain, corridor: &Corridor) -> Option<(i32, bool)> {
         let centred = vec![0; plan::count(corridor.len())];
-        let subject = Subject::new(chain, corridor, plan::shift(&centred), false).ok()?;
+        let subject = Subject::new(chain, corridor, plan::shift(&centred), Reading::Strict).ok()?;
         let stations = corridor.len() - 100..corridor.len() - 65;
         let confirmed = |rsc_mm: i32| {
             let rsc_m = Some(f64::from(rsc_mm) * 1e-3);

@@ -2,7 +2,7 @@
 
 use crate::UP;
 use crate::curve::CurvePoint;
-use crate::feet::{Hint, beside_m, foot_from, point};
+use crate::feet::{Foot, Hint, beside_m, foot_from, point};
 use crate::motion::Pose;
 use crate::swept::SweptVehicle;
 
@@ -57,7 +57,8 @@ impl SweptVehicle<'_> {
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * link.half_width;
         let x = point(pose, a, b);
-        let (s, place, lateral) = foot_from(self.road, x, guess)?;
+        let foot = foot_from(self.road, x, guess)?;
+        let Foot { s, place, lateral } = foot;
         // Newton's method may have reached another leg of the road, where the vehicle is not.
         if self.astray(s, self.rough_foot(cell.step, cell.unit, a)) {
             return None;
@@ -86,7 +87,7 @@ impl SweptVehicle<'_> {
         if dev.is_nan() {
             return None;
         }
-        let bend = self.bend(cell, [a, b], [sin, cos], (s, &place, lateral), slope);
+        let bend = self.bend(cell, [a, b], [sin, cos], &foot, slope);
         Some(Corner { s, place, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
@@ -97,7 +98,7 @@ impl SweptVehicle<'_> {
         cell: &Cell,
         [a, b]: [f64; 2],
         [sin, cos]: [f64; 2],
-        (s, place, lateral): (f64, &CurvePoint, f64),
+        &Foot { s, place, lateral }: &Foot,
         slope: f64,
     ) -> f64 {
         let l = self.chain.links[cell.unit].l;

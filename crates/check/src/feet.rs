@@ -34,13 +34,24 @@ impl Hint {
     }
 }
 
-/// The foot of a point by Newton's method, with its place and the point's lateral place.
-pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, CurvePoint, f64)> {
+/// The foot of a point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Foot {
+    /// Stations of the road.
+    pub(crate) s: f64,
+    /// The road there.
+    pub(crate) place: CurvePoint,
+    /// How far the point is to the left of the road, metres.
+    pub(crate) lateral: f64,
+}
+
+/// The foot of a point by Newton's method.
+pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<Foot> {
     foot_from(road, x, Hint::at(guess))
 }
 
 /// As [`foot`], from a place that may be known.
-pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, CurvePoint, f64)> {
+pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<Foot> {
     let (mut s, mut known) = (guess.s, guess.place);
     for round in 0..ROUNDS {
         let place = known.take().unwrap_or_else(|| road.place(s));
@@ -49,7 +60,7 @@ pub(crate) fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, C
         // A foot may fall into the gap between two stretches that do not quite meet. The gap grows with the distance if
         // headings differ.
         if off.abs() < FOUND_M || round == ROUNDS - 1 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
-            return Some((s, place, lateral));
+            return Some(Foot { s, place, lateral });
         }
         s += off.clamp(-MOST_MOVE_M, MOST_MOVE_M) / (1.0 - place.curvature * lateral).max(LEAST_NARROW) / road.spacing;
     }

@@ -19,6 +19,13 @@ const LOOSE_RAD: f64 = 0.12;
 /// Lengths of a unit after which earlier deviations have faded completely.
 const FADED_LENGTHS: f64 = 40.0;
 
+/// Whether the adjoint may be used where the filter is loose.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Adjoint {
+    Allowed,
+    Forbidden,
+}
+
 /// What the next step starts from.
 pub(crate) struct Filter {
     /// `extra` of each unit at the end of the last step.
@@ -82,8 +89,11 @@ impl Filter {
     }
 
     /// Forbids the adjoint, or allows it again.
-    pub(crate) fn forbid_adjoint(&mut self, forbid: bool) {
-        self.loose_rad = if forbid { f64::INFINITY } else { LOOSE_RAD };
+    pub(crate) fn set_adjoint(&mut self, adjoint: Adjoint) {
+        self.loose_rad = match adjoint {
+            Adjoint::Forbidden => f64::INFINITY,
+            Adjoint::Allowed => LOOSE_RAD,
+        };
     }
 
     /// Whether the adjoint is never used.
@@ -112,6 +122,7 @@ impl Filter {
         for (i, link) in chain.links.iter().enumerate() {
             let swing = motion.swing(step, i);
             let unit = Unit {
+                index: i,
                 link,
                 bend: self.bends[i],
                 curvature: swing.curvature,
@@ -124,7 +135,7 @@ impl Filter {
                 Some((ahead, tube)) => tube.y + chain.links[ahead].d.abs() * tube.a + passed.zh,
                 None => tubes.tolerance_m + passed.zh,
             };
-            let found = self.bound(tubes, chain, &unit, (step, i), &passed, coupling);
+            let found = self.bound(tubes, chain, &unit, step, &passed, coupling);
             // Beyond the radius of its path a deviating coupling would turn back.
             let (tube, end) = found.filter(|_| swing.curvature.abs() * coupling < CURLED)?;
             self.ends[i] = end;
@@ -143,10 +154,11 @@ impl Filter {
         tubes: &mut Tubes,
         chain: &Chain,
         unit: &Unit<'_>,
-        (step, index): (usize, usize),
+        step: usize,
         passed: &Passed,
         coupling: f64,
     ) -> Option<(Tube, f64)> {
+        let index = unit.index;
         let before = step.checked_sub(1).and_then(|before| tubes.get(before, index).copied());
         let plain = unit.settle(passed, before, Lid { coupling, ..Lid::NONE });
         if plain.as_ref().is_some_and(|(tube, _)| tube.a <= self.loose_rad) {
@@ -154,7 +166,7 @@ impl Filter {
             return plain;
         }
         self.lidded = true;
-        let lid = self.lid(tubes, chain, unit, (step, index), passed, coupling);
+        let lid = self.lid(tubes, chain, unit, step, passed, coupling);
         lid.and_then(|lid| unit.settle(passed, before, lid)).or(plain)
     }
 
@@ -165,10 +177,11 @@ impl Filter {
         tubes: &mut Tubes,
         chain: &Chain,
         unit: &Unit<'_>,
-        (step, index): (usize, usize),
+        step: usize,
         passed: &Passed,
         coupling: f64,
     ) -> Option<Lid> {
+        let index = unit.index;
         let outputs = [Output::Point(0.0), Output::Heading];
         let start = match self.exact[index] {
             None if step > tubes.first => adjoint::bounds::<2>(chain, tubes, index, step, outputs)?,
@@ -217,6 +230,7 @@ fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     let gains = straight(chain, tolerance_m);
     for (i, link) in chain.links.iter().enumerate() {
         let unit = Unit {
+            index: i,
             link,
             bend: Bend::STRAIGHT,
             curvature: 0.0,

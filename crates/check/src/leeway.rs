@@ -5,7 +5,7 @@
 //! little, the cell is halved, or the adjoint's bounds replace its tubes. Nothing is sampled: each cell ends with a
 //! bound not below the claim, or with a place where the bound is below the claim.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::cell::{Cell, Corner};
 use crate::feet::{Hint, point};
@@ -49,7 +49,7 @@ enum Fate {
     /// Only its halves can be decided.
     Halved([Cell; 2]),
     /// Its bound is so far below the greatest claim on these stretches, metres.
-    Short(f64, (usize, usize)),
+    Short(f64, RangeInclusive<usize>),
 }
 
 impl SweptVehicle<'_> {
@@ -140,7 +140,7 @@ impl SweptVehicle<'_> {
         if cell.halvings < MOST_HALVINGS && halve {
             return Fate::Halved(self.halves(cell, dull || body > time));
         }
-        Fate::Short(-slack, (first, last))
+        Fate::Short(-slack, first..=last)
     }
 
     /// Halves a cell along its body if asked to or if it is long, else in time.

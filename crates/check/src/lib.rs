@@ -79,7 +79,7 @@ mod vector;
 
 pub use chain::Chain;
 pub use claim::{Finding, Outcome, SpanClaim, Weight, finding};
-pub use fit::RoadError;
+pub use fit::{Reading, RoadError};
 pub use interval::Interval;
 pub use subject::Subject;
 pub use swept::SweptVehicle;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::STEPS;
 use crate::claim::{Finding, SpanClaim, Weight, finding};
+use crate::filter::Adjoint;
 use crate::subject::{FARTHEST, Subject};
 use crate::swept::SweptVehicle;
 use crate::targets::Targets;
@@ -45,9 +46,9 @@ impl Subject<'_> {
             }
         };
         if swept.is_filtered() {
-            swept.filter_alone(true);
+            swept.set_adjoint(Adjoint::Forbidden);
             check(swept);
-            swept.filter_alone(false);
+            swept.set_adjoint(Adjoint::Allowed);
         } else {
             check(&mut swept.filtered_again());
         }

@@ -9,6 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use crate::STEPS;
+use crate::feet::Foot;
 use crate::subject::Subject;
 use netcert_base::vehicle::Vehicle;
 
@@ -41,7 +42,7 @@ pub fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -
         let mut guess = own.start as f64 - behind / road.spacing;
         for node in own.start * STEPS..=last_node.min(motion.steps()) {
             let p = motion.pose(node, last).p;
-            let Some((s, _, lateral)) = subject.foot(p, guess) else { continue };
+            let Some(Foot { s, lateral, .. }) = subject.foot(p, guess) else { continue };
             guess = s;
             if (own.start as f64..=(own.end - 1) as f64).contains(&s) {
                 off = off.max((lateral - subject.planned(s - road.lead as f64)).abs());

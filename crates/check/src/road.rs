@@ -5,7 +5,7 @@
 
 use crate::areas::Areas;
 use crate::curve::{CurvePoint, curve};
-use crate::fit::{RoadError, misfits};
+use crate::fit::{Reading, RoadError, misfits};
 use crate::vector::length;
 use netcert_base::corridor::Corridor;
 
@@ -65,10 +65,10 @@ impl Road {
     /// Tests that the stations fit each other, and extends the corridor by `lead_m` and `tail_m`.
     ///
     /// # Errors
-    /// [`RoadError`] with the first station that does not fit. With `lenient` such a station is no error, and nothing
-    /// is known of the stretch before it. Areas must be well-formed even so.
-    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
-        let misfits = misfits(corridor, lenient)?;
+    /// [`RoadError`] with the first station that does not fit. If read leniently, such a station is no error, and
+    /// nothing is known of the stretch before it. Areas must be well-formed even so.
+    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, reading: Reading) -> Result<Self, RoadError> {
+        let misfits = misfits(corridor, reading)?;
         let (n, spacing) = (corridor.len(), corridor.spacing_m);
         let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);
         let origin = [corridor.x[0], corridor.y[0]];

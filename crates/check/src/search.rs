@@ -14,21 +14,28 @@ use netcert_base::watch;
 /// Most halvings of a body for coarse bounds.
 const COARSE_HALVINGS: u32 = 4;
 
+/// How far a search goes.
+#[derive(Clone, Copy, PartialEq)]
+enum Until {
+    AllDecided,
+    FirstShortfall,
+}
+
 impl SweptVehicle<'_> {
     /// All places where the bound is below the claim: the worst one of each stretch and side. In areas half-widths mean
     /// nothing, so their steps are left out.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
-        let found = self.search(targets, 0..self.chain.links.len(), false);
+        let found = self.search(targets, 0..self.chain.links.len(), Until::AllDecided);
         found.worst.into_iter().flatten().flatten().collect()
     }
 
     /// Whether the bound of one unit is below the claim anywhere.
     pub(crate) fn lacks(&mut self, targets: &Targets, unit: usize) -> bool {
-        self.search(targets, unit..unit + 1, true).any
+        self.search(targets, unit..unit + 1, Until::FirstShortfall).any
     }
 
     /// Decides the cells of some units, in all steps or until one is below its claim.
-    fn search(&mut self, targets: &Targets, units: Range<usize>, any: bool) -> Shortfalls {
+    fn search(&mut self, targets: &Targets, units: Range<usize>, until: Until) -> Shortfalls {
         let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
         let stretches = targets.0[0].len();
         let mut found = Shortfalls::new(stretches);
@@ -61,7 +68,7 @@ impl SweptVehicle<'_> {
                 let slab = Slab { unit, side, steps: steps.clone(), a, halvings: 0 };
                 self.decide(&slab, [before, after], targets, &mut found);
             }
-            if any && found.any {
+            if until == Until::FirstShortfall && found.any {
                 break;
             }
         }

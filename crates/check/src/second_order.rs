@@ -54,6 +54,8 @@ impl Passed {
 
 /// One unit in one step.
 pub(crate) struct Unit<'a> {
+    /// Its number, from 0.
+    pub(crate) index: usize,
     pub(crate) link: &'a Link,
     pub(crate) bend: Bend,
     pub(crate) curvature: f64,
@@ -167,6 +169,7 @@ impl Tubes {
             let Some(tube) = self.get(step, i).copied() else { return };
             let bend = |i: usize| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m);
             let own = Unit {
+                index: i,
                 link: &chain.links[i],
                 bend: bend(i),
                 curvature: motion.swing(step, i).curvature,

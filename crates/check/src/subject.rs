@@ -4,9 +4,8 @@ use std::ops::Range;
 
 use crate::STEPS;
 use crate::chain::Chain;
-use crate::curve::CurvePoint;
-use crate::feet::foot;
-use crate::fit::RoadError;
+use crate::feet::{Foot, foot};
+use crate::fit::{Reading, RoadError};
 use crate::motion::Motion;
 use crate::road::Road;
 use crate::swept::SweptVehicle;
@@ -29,8 +28,7 @@ pub struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     /// `shift(s)` is the plan: metres left of the centreline at `s` stations from the corridor's first. It is held
-    /// beyond both ends. With `lenient`, a station that does not fit is no error; nothing is confirmed on the stretch
-    /// before it.
+    /// beyond both ends.
     ///
     /// # Errors
     /// [`RoadError`] if stations do not fit each other, or an area is malformed.
@@ -38,14 +36,14 @@ impl<'a> Subject<'a> {
         chain: &'a Chain,
         corridor: &Corridor,
         shift: impl Fn(f64) -> f64,
-        lenient: bool,
+        reading: Reading,
     ) -> Result<Self, RoadError> {
         let (ahead, behind) = chain.reach_m();
         let road = Road::new(
             corridor,
             ahead + SPARE * corridor.spacing_m,
             FARTHEST * behind + SPARE * corridor.spacing_m,
-            lenient,
+            reading,
         )?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
@@ -90,7 +88,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The foot of a point near `guess` (stations of the road), its place, and the point's lateral place.
-    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, CurvePoint, f64)> {
+    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<Foot> {
         foot(&self.road, x, guess)
     }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::STEPS;
 use crate::chain::Chain;
 use crate::feet::{foot, point};
-use crate::filter::Filter;
+use crate::filter::{Adjoint, Filter};
 use crate::gains::Knots;
 use crate::motion::{Motion, Pose};
 use crate::road::Road;
@@ -54,14 +54,15 @@ pub(crate) struct Known {
 
 impl<'a> SweptVehicle<'a> {
     pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
-        Self::of(chain, road, motion, Filter::new(chain, road.spacing, tolerance_m), motion.steps())
+        let (filter, tubes) = Filter::new(chain, road.spacing, tolerance_m);
+        Self::of(chain, road, motion, filter, tubes, motion.steps())
     }
 
     /// Uses the filter's bounds alone, however loose they are.
     pub(crate) fn filtered(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
         let (mut filter, tubes) = Filter::new(chain, road.spacing, tolerance_m);
-        filter.forbid_adjoint(true);
-        Self::of(chain, road, motion, (filter, tubes), motion.steps())
+        filter.set_adjoint(Adjoint::Forbidden);
+        Self::of(chain, road, motion, filter, tubes, motion.steps())
     }
 
     /// The vehicle with tubes up to step `end`, from a filter that begins.
@@ -69,7 +70,8 @@ impl<'a> SweptVehicle<'a> {
         chain: &'a Chain,
         road: &'a Road,
         motion: &'a Motion,
-        (mut filter, mut tubes): (Filter, Tubes),
+        mut filter: Filter,
+        mut tubes: Tubes,
         end: usize,
     ) -> Self {
         tubes.reserve(end.saturating_sub(tubes.first));
@@ -93,8 +95,8 @@ impl<'a> SweptVehicle<'a> {
     }
 
     /// Forbids the adjoint, or allows it again.
-    pub(crate) fn filter_alone(&mut self, alone: bool) {
-        self.filter.forbid_adjoint(alone);
+    pub(crate) fn set_adjoint(&mut self, adjoint: Adjoint) {
+        self.filter.set_adjoint(adjoint);
     }
 
     /// The same vehicle anew, by the filter's bounds alone.
@@ -108,8 +110,8 @@ impl<'a> SweptVehicle<'a> {
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
         let first = steps.start.saturating_sub(history);
-        let begun = self.filter.within(&self.tubes, self.chain, first, tolerance_m);
-        Self::of(self.chain, self.road, self.motion, begun, steps.end)
+        let (filter, tubes) = self.filter.within(&self.tubes, self.chain, first, tolerance_m);
+        Self::of(self.chain, self.road, self.motion, filter, tubes, steps.end)
     }
 
     /// Steps during which some body point may have its foot on the given stretches of the corridor.

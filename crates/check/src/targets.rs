@@ -1,5 +1,7 @@
 //! What leeway is claimed, and where it is missing.
 
+use std::ops::RangeInclusive;
+
 use crate::cell::Cell;
 
 /// Claimed leeway on each stretch between stations of the corridor, by side (0 left, 1 right), metres. −∞ claims
@@ -51,11 +53,11 @@ impl Shortfalls {
         station: f64,
         point_m: f64,
         short_m: f64,
-        (first, last): (usize, usize),
+        stretches: RangeInclusive<usize>,
         targets: &Targets,
     ) {
-        let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
-        for k in first..=last {
+        let most = stretches.clone().map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
+        for k in stretches {
             let own = short_m - (most - targets.0[cell.side][k]);
             let slot = &mut self.worst[cell.side][k];
             if own > 0.0 && slot.is_none_or(|worst| own > worst.short_m) {

@@ -22,7 +22,7 @@ pub(super) fn place(cells: &mut Cells, quantity: Quantity) -> Option<(Place, Opt
     if cells.record.faults.len() > before {
         return None;
     }
-    let place = match (by_id, shape) {
+    let (place, begins) = match (by_id, shape) {
         (Some(place), shape) => (place, shape.as_ref().and_then(first)),
         (None, Some(shape)) => (shape, None),
         (None, None) => {
@@ -30,7 +30,7 @@ pub(super) fn place(cells: &mut Cells, quantity: Quantity) -> Option<(Place, Opt
             return cells.refuse(Column::Geometry, what);
         }
     };
-    fitting(cells, quantity, place)
+    Some((fitting(cells, quantity, place)?, begins))
 }
 
 /// Makes `lon` and `lat` the row's geometry.
@@ -113,9 +113,9 @@ fn first(place: &Place) -> Option<LonLat> {
 }
 
 /// The place, if such a quantity can be measured there.
-fn fitting<T>(cells: &mut Cells, quantity: Quantity, found: (Place, T)) -> Option<(Place, T)> {
-    let road = matches!(found.0, Place::Way { .. } | Place::Edge(_) | Place::Line(_));
-    let junction = matches!(found.0, Place::Junction { .. });
+fn fitting(cells: &mut Cells, quantity: Quantity, place: Place) -> Option<Place> {
+    let road = matches!(place, Place::Way { .. } | Place::Edge(_) | Place::Line(_));
+    let junction = matches!(place, Place::Junction { .. });
     let name = quantity.name();
     match quantity {
         Quantity::KerbRadius if road => {
@@ -126,12 +126,12 @@ fn fitting<T>(cells: &mut Cells, quantity: Quantity, found: (Place, T)) -> Optio
             let what = format!("a `{name}` belongs to a junction; leave `way_id` and `edge_id` empty");
             cells.refuse(Column::Quantity, what)
         }
-        Quantity::KerbRadius | Quantity::Surface | Quantity::DrivableBy => Some(found),
+        Quantity::KerbRadius | Quantity::Surface | Quantity::DrivableBy => Some(place),
         _ if junction => {
             let what = format!("a `{name}` belongs to a road; give `way_id`, `edge_id`, a line or a point");
             cells.refuse(Column::Quantity, what)
         }
-        _ => Some(found),
+        _ => Some(place),
     }
 }
 

@@ -57,7 +57,7 @@ fn adjoint(
 /// The impulse responses of `target` over at most `window` steps, linearised about `run` under `disturbance`.
 pub fn kernel(drive: &Drive<'_>, run: &Run, disturbance: &Disturbance, target: &Target, window: usize) -> Kernel {
     let lambda = gradient(drive, run.at(target.step).1, target);
-    backwards(drive, run, disturbance, (target.step, window), lambda, target.push)
+    backwards(drive, run, disturbance, target.step, window, lambda, target.push)
 }
 
 /// The impulse responses of the articulation at `hinge` after `step`, positive to the left by `sign`. Hinge 0 is the
@@ -66,7 +66,8 @@ pub fn hinge_kernel(
     drive: &Drive<'_>,
     run: &Run,
     disturbance: &Disturbance,
-    (step, window): (usize, usize),
+    step: usize,
+    window: usize,
     hinge: usize,
     sign: f64,
 ) -> Kernel {
@@ -75,7 +76,7 @@ pub fn hinge_kernel(
     if let Some(ahead) = hinge.checked_sub(1) {
         lambda[ahead] = -sign;
     }
-    backwards(drive, run, disturbance, (step, window), lambda, [0.0; 2])
+    backwards(drive, run, disturbance, step, window, lambda, [0.0; 2])
 }
 
 /// `lambda` is the target's change with each heading at its step; `push` is its change with the steer axle's place
@@ -84,7 +85,8 @@ fn backwards(
     drive: &Drive<'_>,
     run: &Run,
     disturbance: &Disturbance,
-    (at, window): (usize, usize),
+    at: usize,
+    window: usize,
     mut lambda: PerUnit,
     push: V2,
 ) -> Kernel {

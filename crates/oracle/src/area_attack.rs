@@ -10,15 +10,15 @@ use netcert_base::vehicle::Vehicle;
 
 use crate::adversary::{Bounds, Target, kernel};
 use crate::area::EDGES;
-use crate::attack::{self, Attack, STEPS_PER_M, SWING_M};
+use crate::attack::{self, Attack, Course, STEPS_PER_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
 use crate::path::{Path, V2, along, dot};
-use crate::simulator::{Disturbance, Near, Run, sweep};
+use crate::simulator::{Disturbance, Near, Run, SearchGrid, sweep};
 use crate::swept::{Grounds, Stretch, Worst, body};
 
-/// Steps between the states that are searched for places to attack.
-const COARSE: usize = 5;
+/// The steps and body points that are searched for places to attack.
+const COARSE: SearchGrid = SearchGrid { stride: 5, pitch_m: 0.5 };
 /// Two places of one unit are the same attack if they are this close: steps, and metres on the body.
 const SAME_STEPS: usize = 10;
 const SAME_M: f64 = 0.4;
@@ -151,12 +151,12 @@ impl<'a> AreaAttack<'a> {
     /// Attacks the worst places of the areas in some steps.
     pub(crate) fn attack_in(&mut self, steps: Range<usize>, places: usize) {
         for (k, worst) in self.targets(steps, places).into_iter().enumerate() {
-            for fast in [true, false] {
-                self.attack(worst, (fast, 1.0), if fast { "a push" } else { "a push within the course tolerance" });
+            for course in [Course::Exceeded, Course::Kept] {
+                self.attack(worst, course, 1.0, course.push());
             }
             // At a kink of the boundary the nearest place may not be the one that is reached.
             if k < 2 {
-                self.attack(worst, (true, -1.0), "a push away");
+                self.attack(worst, Course::Exceeded, -1.0, "a push away");
             }
         }
     }
@@ -173,7 +173,7 @@ impl<'a> AreaAttack<'a> {
     /// whose room is less than a little before and after, and the edge's ends at the same moment.
     fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<Worst> {
         let (drive, nominal) = (&self.attack.drive, &self.attack.nominal);
-        let steps: Vec<usize> = steps.step_by(COARSE).collect();
+        let steps: Vec<usize> = steps.step_by(COARSE.stride).collect();
         let mut kept: Vec<Worst> = Vec::new();
         for unit in 0..drive.vehicle.units.len() {
             for edge in EDGES {
@@ -227,14 +227,10 @@ impl<'a> AreaAttack<'a> {
 
     /// Attacks a place: linearised about the undisturbed run, then twice about the attacked run, at the place of the
     /// same unit that is worst there.
-    fn attack(&mut self, worst: Worst, (fast, sign): (bool, f64), by: &'static str) {
+    fn attack(&mut self, worst: Worst, course: Course, sign: f64, by: &'static str) {
         let drive_steps = self.attack.drive.steps();
         let per_step = self.attack.drive.path.spacing_m / self.attack.drive.steps_per_span as f64;
-        let slope = if fast {
-            2.0 * self.attack.bounds.steer_m / SWING_M
-        } else {
-            self.attack.drive.vehicle.tracking_heading_rad.tan()
-        };
+        let slope = course.slope(self.attack.bounds.steer_m, self.attack.drive.vehicle);
         let bounds = Bounds { change_m: slope * per_step, ..self.attack.bounds };
         let mut target = self.target(&self.attack.nominal, &worst, sign);
         let mut attacked: Option<(Run, Disturbance)> = None;
@@ -247,7 +243,7 @@ impl<'a> AreaAttack<'a> {
             let disturbance = kernel.attack(&bounds, drive_steps);
             let run = self.attack.from(kernel.first, near.end, &disturbance);
             self.measure(&run, near.clone(), by);
-            if !fast {
+            if course == Course::Kept {
                 self.attack.measure_hinges(&run, near);
             }
             // A run ends a little after its target, so the next round's place has to lie before its end.
@@ -280,10 +276,10 @@ impl<'a> AreaAttack<'a> {
         };
         for stretch in self.grounds.stretches(range) {
             match stretch {
-                Stretch::Outside(steps) => sweep(drive, run, &self.attack.road, steps, (COARSE, 0.5), &mut note),
+                Stretch::Outside(steps) => sweep(drive, run, &self.attack.road, steps, COARSE, &mut note),
                 Stretch::Doubtful(steps) => {
                     let mut units: Vec<(usize, Near)> = Vec::new();
-                    sweep(drive, run, &self.attack.road, steps, (COARSE, 0.5), |near| {
+                    sweep(drive, run, &self.attack.road, steps, COARSE, |near| {
                         match units.last_mut().filter(|(unit, last)| (*unit, last.step) == (near.unit, near.step)) {
                             Some((_, last)) if near.clearance_m < last.clearance_m => *last = near,
                             Some(_) => {}

@@ -13,12 +13,37 @@ use crate::claim::{BodyPoint, Claim};
 use crate::draw::Draw;
 use crate::path::{Path, along, direction, dot, left_of, wrapped};
 use crate::road::Road;
-use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, places, sweep};
+use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, SearchGrid, places, sweep};
 
 /// Steps per metre. RK4 is then within 2e-6 m of the limit (`simulator.rs`).
 pub const STEPS_PER_M: usize = 10;
 /// Metres in which the steer axle may swing from one bound to the other in a fast attack.
 pub(crate) const SWING_M: f64 = 0.3;
+
+/// Whether the steer axle keeps within the course tolerance, too, or within the lateral one alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Course {
+    Kept,
+    Exceeded,
+}
+
+impl Course {
+    /// The lateral error's greatest change per metre, if it is at most `steer_m`.
+    pub(crate) fn slope(self, steer_m: f64, vehicle: &Vehicle) -> f64 {
+        match self {
+            Self::Exceeded => 2.0 * steer_m / SWING_M,
+            Self::Kept => vehicle.tracking_heading_rad.tan(),
+        }
+    }
+
+    /// What a push is called.
+    pub(crate) fn push(self) -> &'static str {
+        match self {
+            Self::Exceeded => "a push",
+            Self::Kept => "a push within the course tolerance",
+        }
+    }
+}
 
 /// The result of an attack.
 #[derive(Debug, Clone)]
@@ -83,7 +108,7 @@ impl<'a> Attack<'a> {
         let mut attack = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
         let range = attack.on_road();
         let nominal = std::mem::replace(&mut attack.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
-        attack.measure(&nominal, range, "nothing", true);
+        attack.measure(&nominal, range, "nothing", Course::Kept);
         attack.nominal = nominal;
         attack.outcome.undisturbed_m = attack.outcome.least.clearance_m;
         attack
@@ -94,19 +119,20 @@ impl<'a> Attack<'a> {
     pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> Outcome {
         let worst = self.outcome.least;
         let worst = BodyPoint { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
-        self.outcome.first_order_m = self.attack(claim.limiting, true, "limiting place");
-        self.attack(claim.limiting, false, "limiting place, within the course tolerance");
-        self.attack(worst, true, "undisturbed worst");
+        self.outcome.first_order_m = self.attack(claim.limiting, Course::Exceeded, "limiting place");
+        self.attack(claim.limiting, Course::Kept, "limiting place, within the course tolerance");
+        self.attack(worst, Course::Exceeded, "undisturbed worst");
         for k in 0..others {
             let point = self.random_point(draw);
-            self.attack(point, k % 2 == 0, "random place");
+            let course = if k % 2 == 0 { Course::Exceeded } else { Course::Kept };
+            self.attack(point, course, "random place");
         }
         for _ in 0..others {
             self.attack_hinges(draw);
         }
         let noise = self.noise(draw);
         let run = self.drive.whole(&noise);
-        self.measure(&run, self.on_road(), "noise", false);
+        self.measure(&run, self.on_road(), "noise", Course::Exceeded);
         self.outcome
     }
 
@@ -150,25 +176,24 @@ impl<'a> Attack<'a> {
 
     /// Attacks one place twice: linearised about the undisturbed run, then about the attacked run. Returns the
     /// clearance that the first linearisation predicts.
-    fn attack(&mut self, point: BodyPoint, fast: bool, by: &'static str) -> f64 {
+    fn attack(&mut self, point: BodyPoint, course: Course, by: &'static str) -> f64 {
         let aside_m = point.side * 0.5 * self.drive.vehicle.units[point.unit].width_m;
         let (step, clearance_m) = self.step_at(&point, aside_m);
         let (_, tangent) = self.road.centre(point.foot_m);
         let push = along([0.0; 2], point.side, left_of(tangent));
         let target = Target { step, unit: point.unit, ahead_m: point.ahead_m, aside_m, push };
         let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
-        let slope =
-            if fast { 2.0 * self.bounds.steer_m / SWING_M } else { self.drive.vehicle.tracking_heading_rad.tan() };
+        let slope = course.slope(self.bounds.steer_m, self.drive.vehicle);
         let bounds = Bounds { change_m: slope * per_step, ..self.bounds };
         let first = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
         let near =
             step.saturating_sub(15 * STEPS_PER_M).max(first.first)..(step + 3 * STEPS_PER_M).min(self.drive.steps());
         let first_attack = first.attack(&bounds, self.drive.steps());
         let run = self.from(first.first, near.end, &first_attack);
-        self.measure(&run, near.clone(), by, !fast);
+        self.measure(&run, near.clone(), by, course);
         let again = kernel(&self.drive, &run, &first_attack, &target, self.memory());
         let run = self.from(first.first, near.end, &again.attack(&bounds, self.drive.steps()));
-        self.measure(&run, near, by, !fast);
+        self.measure(&run, near, by, course);
         clearance_m - first.reach_m(&bounds)
     }
 
@@ -185,11 +210,10 @@ impl<'a> Attack<'a> {
                 range.clone().max_by(|&a, &b| folded(a).abs().total_cmp(&folded(b).abs())).unwrap_or(range.start);
             for step in [most, range.start + draw.below(range.len())] {
                 let sign = if self.folded(&self.nominal, step, hinge) < 0.0 { -1.0 } else { 1.0 };
-                let window = (step, self.memory());
                 let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
                 let change_m = self.drive.vehicle.tracking_heading_rad.tan() * per_step;
                 let bounds = Bounds { change_m, ..self.bounds };
-                let kernel = hinge_kernel(&self.drive, &self.nominal, &self.calm, window, hinge, sign);
+                let kernel = hinge_kernel(&self.drive, &self.nominal, &self.calm, step, self.memory(), hinge, sign);
                 let end = (step + STEPS_PER_M).min(self.drive.steps());
                 let run = self.from(kernel.first, end, &kernel.attack(&bounds, self.drive.steps()));
                 self.measure_hinges(&run, kernel.first..end);
@@ -243,9 +267,9 @@ impl<'a> Attack<'a> {
         ahead + units[point.unit].coupling_to_axle_m - point.ahead_m
     }
 
-    /// Records the least clearance of a run in `range`, and its articulation if `course` was kept.
-    fn measure(&mut self, run: &Run, range: std::ops::Range<usize>, by: &'static str, course: bool) {
-        let least = |range: std::ops::Range<usize>, grid: (usize, f64)| {
+    /// Records the least clearance of a run in `range`, and its articulation if the course tolerance was kept.
+    fn measure(&mut self, run: &Run, range: std::ops::Range<usize>, by: &'static str, course: Course) {
+        let least = |range: std::ops::Range<usize>, grid: SearchGrid| {
             let mut least: Option<Near> = None;
             sweep(&self.drive, run, &self.road, range, grid, |near| {
                 if least.is_none_or(|l| near.clearance_m < l.clearance_m) {
@@ -254,13 +278,13 @@ impl<'a> Attack<'a> {
             });
             least
         };
-        let Some(rough) = least(range.clone(), (5, 0.5)) else { return };
+        let Some(rough) = least(range.clone(), SearchGrid { stride: 5, pitch_m: 0.5 }) else { return };
         let close = rough.step.saturating_sub(5).max(range.start)..(rough.step + 6).min(range.end);
-        let least = least(close, (1, 0.1)).unwrap_or(rough);
+        let least = least(close, SearchGrid { stride: 1, pitch_m: 0.1 }).unwrap_or(rough);
         if least.clearance_m < self.outcome.least.clearance_m {
             (self.outcome.least, self.outcome.by) = (least, by);
         }
-        if course {
+        if course == Course::Kept {
             self.measure_hinges(run, range);
         }
     }

@@ -123,7 +123,7 @@ impl Crossing {
             crossing.lanes[road] = if draw.one_in(2) { [-half_m, middle - thin_m] } else { [middle + thin_m, half_m] };
             let from_m = draw.between(1.0, 6.0);
             let length_m = draw.between(4.0, 15.0);
-            crossing.islands.push(crossing.island(road, (middle, thin_m), (from_m, from_m + length_m)));
+            crossing.islands.push(crossing.island(road, middle, thin_m, [from_m, from_m + length_m]));
         }
         // The other road is used as a whole, if it has no island.
         for road in (0..2).filter(|road| which != 2 && which != *road) {
@@ -133,7 +133,7 @@ impl Crossing {
     }
 
     /// An island on a road, pointed at both ends, between two distances from the crossing.
-    fn island(&self, road: usize, (middle, thin_m): (f64, f64), (from_m, to_m): (f64, f64)) -> Vec<V2> {
+    fn island(&self, road: usize, middle: f64, thin_m: f64, [from_m, to_m]: [f64; 2]) -> Vec<V2> {
         let place = self.past_mouth(road);
         vec![
             place(from_m, middle),

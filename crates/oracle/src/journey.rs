@@ -11,15 +11,15 @@ use netcert_base::vehicle::Vehicle;
 
 use crate::adversary::{Bounds, Target, kernel};
 use crate::area_attack::{AreaAttack, Found, Scope};
-use crate::attack::{STEPS_PER_M, SWING_M};
+use crate::attack::{Course, STEPS_PER_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
 use crate::path::{Path, along, left_of};
-use crate::simulator::{Near, Run, sweep};
+use crate::simulator::{Near, Run, SearchGrid, sweep};
 use crate::swept::Stretch;
 
-/// Steps between the states that are searched for places to attack, and metres between the points of a body.
-const COARSE: (usize, f64) = (5, 0.5);
+/// The steps and body points that are searched for places to attack.
+const COARSE: SearchGrid = SearchGrid { stride: 5, pitch_m: 0.5 };
 /// Of a unit's side one place is looked at in so many steps.
 const APART_STEPS: usize = 30 * STEPS_PER_M;
 /// Places at half-widths whose reach is computed, as a multiple of those that are attacked.
@@ -95,8 +95,8 @@ impl<'a> Journey<'a> {
                 Stretch::Inside(steps) => self.areas.attack_in(steps, places),
                 Stretch::Outside(steps) => {
                     for target in self.targets(steps, places) {
-                        for fast in [true, false] {
-                            self.push(&target, fast);
+                        for course in [Course::Exceeded, Course::Kept] {
+                            self.push(&target, course);
                         }
                     }
                 }
@@ -148,13 +148,12 @@ impl<'a> Journey<'a> {
     }
 
     /// Pushes a body point twice: linearised about the undisturbed run, then about the attacked run.
-    fn push(&mut self, target: &Target, fast: bool) {
+    fn push(&mut self, target: &Target, course: Course) {
         let areas = &mut self.areas;
         let (attack, memory) = (&areas.attack, areas.attack.memory());
         let steps = attack.drive.steps();
         let per_step = attack.drive.path.spacing_m / attack.drive.steps_per_span as f64;
-        let slope =
-            if fast { 2.0 * attack.bounds.steer_m / SWING_M } else { attack.drive.vehicle.tracking_heading_rad.tan() };
+        let slope = course.slope(attack.bounds.steer_m, attack.drive.vehicle);
         let bounds = Bounds { change_m: slope * per_step, ..attack.bounds };
         let mut attacked: Option<(Run, _)> = None;
         for _ in 0..2 {
@@ -165,8 +164,8 @@ impl<'a> Journey<'a> {
                 ..(target.step + 3 * STEPS_PER_M).min(steps);
             let disturbance = kernel.attack(&bounds, steps);
             let run = attack.from(kernel.first, near.end, &disturbance);
-            areas.measure(&run, near.clone(), if fast { "a push" } else { "a push within the course tolerance" });
-            if !fast {
+            areas.measure(&run, near.clone(), course.push());
+            if course == Course::Kept {
                 areas.attack.measure_hinges(&run, near);
             }
             attacked = Some((run, disturbance));

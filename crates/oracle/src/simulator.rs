@@ -187,20 +187,29 @@ pub fn places(vehicle: &Vehicle, unit: usize, pitch_m: f64) -> Vec<f64> {
     (0..=pieces as usize).map(|k| back + (front - back) * k as f64 / pieces).collect()
 }
 
-/// Visits body points every `stride` steps of `range`: all corners, and points every `pitch_m` of both sides. A point
+/// How densely body points are visited.
+#[derive(Debug, Clone, Copy)]
+pub struct SearchGrid {
+    /// Steps from one visit to the next.
+    pub stride: usize,
+    /// Metres between the points of a side, at most.
+    pub pitch_m: f64,
+}
+
+/// Visits body points at the steps of `range` that the grid has: all corners, and points along both sides. A point
 /// counts against *both* edges if its foot lies on the corridor.
 pub fn sweep(
     drive: &Drive<'_>,
     run: &Run,
     road: &Road<'_>,
     range: std::ops::Range<usize>,
-    (stride, pitch_m): (usize, f64),
+    grid: SearchGrid,
     mut visit: impl FnMut(Near),
 ) {
     let units = drive.vehicle.units.len();
-    let ladder: Vec<Vec<f64>> = (0..units).map(|i| places(drive.vehicle, i, pitch_m)).collect();
+    let ladder: Vec<Vec<f64>> = (0..units).map(|i| places(drive.vehicle, i, grid.pitch_m)).collect();
     let mut feet: Option<PerUnit> = None;
-    for step in range.step_by(stride) {
+    for step in range.step_by(grid.stride) {
         let (guide, headings) = run.at(step);
         let axles = drive.axles(guide, headings);
         let feet = feet.get_or_insert_with(|| first_feet(drive, road, step, &axles));

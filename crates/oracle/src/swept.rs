@@ -62,8 +62,8 @@ fn step_at(drive: &Drive<'_>, from_m: f64) -> f64 {
 
 /// The least room of any body while the steer axle is between two places of the path, metres from the first vertex of
 /// its plan. A metre and a half at both ends does not count. `None` if nothing is left.
-pub fn swept_room(drive: &Drive<'_>, run: &Run, area: &Area, (from_m, to_m): (f64, f64)) -> Option<Worst> {
-    let grounds = Grounds::between(drive, &[(area, (from_m, to_m))]);
+pub fn swept_room(drive: &Drive<'_>, run: &Run, area: &Area, heads_m: [f64; 2]) -> Option<Worst> {
+    let grounds = Grounds::between(drive, &[(area, heads_m)]);
     grounds.least(drive, run, run.steps())
 }
 
@@ -71,7 +71,7 @@ impl Grounds {
     /// The areas of a corridor, for a path with one vertex for each of its stations.
     pub fn new(corridor: &Corridor, drive: &Drive<'_>) -> Self {
         let places = |heads: &Range<usize>| {
-            (heads.start as f64 * corridor.spacing_m, heads.end.saturating_sub(1) as f64 * corridor.spacing_m)
+            [heads.start as f64 * corridor.spacing_m, heads.end.saturating_sub(1) as f64 * corridor.spacing_m]
         };
         let spans: Vec<_> = corridor.areas.iter().map(|span| (&*span.area, places(&span.heads))).collect();
         Self::between(drive, &spans)
@@ -79,8 +79,8 @@ impl Grounds {
 
     /// Areas, each with the first and the last place of the steer axle for which it counts, metres from the first
     /// vertex of the path's plan.
-    pub fn between(drive: &Drive<'_>, spans: &[(&Area, (f64, f64))]) -> Self {
-        let steps = |(from_m, to_m): (f64, f64)| {
+    pub fn between(drive: &Drive<'_>, spans: &[(&Area, [f64; 2])]) -> Self {
+        let steps = |[from_m, to_m]: [f64; 2]| {
             step_at(drive, from_m).ceil().max(0.0) as usize..step_at(drive, to_m).floor().max(0.0) as usize + 1
         };
         let spans = spans.iter().map(|(area, places)| (Ground::new(area), steps(*places))).collect();
@@ -218,12 +218,12 @@ mod tests {
         let drive = Drive::new(&vehicle, &path, 5);
         let run = drive.whole(&Disturbance::none(drive.steps()));
         let strip = Area { rings: vec![vec![[-60.0, -2.0], [100.0, -2.0], [100.0, 1.9], [-60.0, 1.9]]] };
-        let worst = swept_room(&drive, &run, &strip, (10.0, 60.0)).unwrap();
+        let worst = swept_room(&drive, &run, &strip, [10.0, 60.0]).unwrap();
         assert!((worst.room_m - (1.9 - 0.5 * 2.55)).abs() < 1e-9, "{worst:?}");
         assert_eq!(worst.edge, Edge::Left);
         // The front is 1.4 m ahead of the steer axle, whose last place that counts is 98.5 m.
-        let worst = swept_room(&drive, &run, &strip, (20.0, 100.0)).unwrap();
+        let worst = swept_room(&drive, &run, &strip, [20.0, 100.0]).unwrap();
         assert!((worst.room_m - 0.1).abs() < 0.01 && worst.ahead_m > 5.0, "{worst:?}");
-        assert!(swept_room(&drive, &run, &strip, (10.0, 12.0)).is_none());
+        assert!(swept_room(&drive, &run, &strip, [10.0, 12.0]).is_none());
     }
 }

@@ -8,7 +8,7 @@ use netcert_base::vehicle::Vehicle;
 
 use crate::path::{Path, V2, along, direction, dot, left_of};
 use crate::road::{self, Road};
-use crate::simulator::{Disturbance, Drive, Run, sweep};
+use crate::simulator::{Disturbance, Drive, Run, SearchGrid, sweep};
 
 /// Distance between the vertices of a turn's path, metres.
 const PITCH_M: f64 = 0.1;
@@ -114,7 +114,7 @@ pub fn swept_width_m(vehicle: &Vehicle, turn: &Turn) -> f64 {
     let bin_m = 0.2;
     let bins = (road.length_m() / bin_m) as usize + 1;
     let mut extent = vec![(f64::INFINITY, f64::NEG_INFINITY); bins];
-    sweep(&drive, &run, &road, run.steps(), (1, 0.2), |near| {
+    sweep(&drive, &run, &road, run.steps(), SearchGrid { stride: 1, pitch_m: 0.2 }, |near| {
         // Half-widths are zero, so the clearance is minus the lateral place.
         let lateral = -near.edge * near.clearance_m;
         let lateral = if near.edge > 0.0 { lateral } else { -lateral.abs() };

@@ -62,7 +62,14 @@ pub(super) fn of_json(geometry: &Value, wanted: &str) -> Result<Vec<LonLat>, Pro
 mod tests {
     use super::*;
 
-    fn bytes(little: bool, code: u32, numbers: &[f64]) -> Vec<u8> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum ByteOrder {
+        Little,
+        Big,
+    }
+
+    fn bytes(order: ByteOrder, code: u32, numbers: &[f64]) -> Vec<u8> {
+        let little = order == ByteOrder::Little;
         let int = |n: u32| if little { n.to_le_bytes() } else { n.to_be_bytes() };
         let mut out = vec![u8::from(little)];
         out.extend(int(code));
@@ -76,20 +83,20 @@ mod tests {
     #[test]
     fn lines_of_both_byte_orders_and_with_heights() {
         let want = [place([8.0, 49.0]).unwrap(), place([9.0, 50.0]).unwrap()];
-        assert_eq!(line(&bytes(true, 2, &[8.0, 49.0, 9.0, 50.0])).unwrap(), want);
-        assert_eq!(line(&bytes(false, 1002, &[8.0, 49.0, 110.0, 9.0, 50.0, 120.0])).unwrap(), want);
-        assert_eq!(line(&bytes(true, 0x8000_0002, &[8.0, 49.0, 110.0, 9.0, 50.0, 120.0])).unwrap(), want);
-        assert_eq!(point(&bytes(true, 1, &[8.0, 49.0])).unwrap(), want[0]);
+        assert_eq!(line(&bytes(ByteOrder::Little, 2, &[8.0, 49.0, 9.0, 50.0])).unwrap(), want);
+        assert_eq!(line(&bytes(ByteOrder::Big, 1002, &[8.0, 49.0, 110.0, 9.0, 50.0, 120.0])).unwrap(), want);
+        assert_eq!(line(&bytes(ByteOrder::Little, 0x8000_0002, &[8.0, 49.0, 110.0, 9.0, 50.0, 120.0])).unwrap(), want);
+        assert_eq!(point(&bytes(ByteOrder::Little, 1, &[8.0, 49.0])).unwrap(), want[0]);
     }
 
     #[test]
     fn what_is_no_line_in_degrees_is_an_error() {
         for (bytes, said) in [
-            (bytes(true, 1, &[8.0, 49.0]), "a point in place of a line string"),
-            (bytes(true, 3, &[]), "ends too early"),
-            (bytes(true, 2, &[500_000.0, 5_000_000.0, 0.0, 0.0]), "no longitude and latitude"),
-            (bytes(true, 2, &[f64::NAN, 0.0, 0.0, 0.0]), "no finite number"),
-            (bytes(true, 2, &[8.0]), "ends too early"),
+            (bytes(ByteOrder::Little, 1, &[8.0, 49.0]), "a point in place of a line string"),
+            (bytes(ByteOrder::Little, 3, &[]), "ends too early"),
+            (bytes(ByteOrder::Little, 2, &[500_000.0, 5_000_000.0, 0.0, 0.0]), "no longitude and latitude"),
+            (bytes(ByteOrder::Little, 2, &[f64::NAN, 0.0, 0.0, 0.0]), "no finite number"),
+            (bytes(ByteOrder::Little, 2, &[8.0]), "ends too early"),
             (Vec::new(), "ends too early"),
             (vec![7], "no well-known binary"),
         ] {

@@ -10,16 +10,24 @@ use super::segment::Road;
 use crate::osm::facts::{RestrictedTurn, RestrictionKind, TurnRule};
 use crate::osm::{LonLat, Restriction, Via};
 
+/// The side of a vertex from which vehicles with a heading come.
+#[derive(Debug, Clone, Copy)]
+struct VertexSide {
+    vertex: usize,
+    /// The heading on the road: 0 along, 1 against.
+    heading: usize,
+}
+
 /// A transition whose roads and nodes are known.
 pub(super) struct Turn {
     from: usize,
-    /// Vertices of that road at which vehicles arrive, each with the heading on the road: 0 along, 1 against.
-    arrivals: Vec<(usize, usize)>,
+    /// Where vehicles arrive on that road.
+    arrivals: Vec<VertexSide>,
     /// Roads between, each from node to node.
     between: Vec<(usize, i64, i64)>,
     via: i64,
     to: usize,
-    leaving: Vec<(usize, usize)>,
+    leaving: Vec<VertexSide>,
     conditional: bool,
     number: u64,
 }
@@ -30,7 +38,7 @@ pub(super) fn resolve(roads: &mut [Road], account: &mut Account) -> Vec<Turn> {
     let mut turns = Vec::new();
     for from in 0..roads.len() {
         for (number, transition) in std::mem::take(&mut roads[from].transitions).iter().enumerate() {
-            match turn(roads, &index, (from, number as u64), transition) {
+            match turn(roads, &index, from, number as u64, transition) {
                 Ok(turn) => {
                     account.kept(RULE, 1);
                     if turn.conditional {
@@ -44,7 +52,7 @@ pub(super) fn resolve(roads: &mut [Road], account: &mut Account) -> Vec<Turn> {
     }
     for turn in &turns {
         for (road, vertices) in [(turn.from, &turn.arrivals), (turn.to, &turn.leaving)] {
-            vertices.iter().for_each(|(vertex, _)| roads[road].cut(*vertex));
+            vertices.iter().for_each(|side| roads[road].cut(side.vertex));
         }
         for &(road, enter, leave) in &turn.between {
             for vertex in vertices(&roads[road], enter).into_iter().chain(vertices(&roads[road], leave)) {
@@ -58,7 +66,8 @@ pub(super) fn resolve(roads: &mut [Road], account: &mut Account) -> Vec<Turn> {
 fn turn(
     roads: &[Road],
     index: &FxHashMap<Key, usize>,
-    (from, number): (usize, u64),
+    from: usize,
+    number: u64,
     transition: &Transition,
 ) -> Result<Turn, &'static str> {
     let when = transition.when.as_ref();
@@ -104,7 +113,7 @@ fn turn(
     }
     let inside = range(transition.between.as_deref()).unwrap_or([0.0, 1.0]);
     let mut arrivals = passing(&roads[from], first, arrives);
-    arrivals.retain(|&(vertex, heading)| {
+    arrivals.retain(|&VertexSide { vertex, heading }| {
         let share = roads[from].line.share(vertex);
         // Shares in files are rounded.
         const ROUNDING: f64 = 1e-6;
@@ -125,17 +134,21 @@ fn vertices(road: &Road, node: i64) -> Vec<usize> {
 
 /// The vertices at a node at which a road arrives in these headings. A road leaves a vertex in the headings in which it arrives there from the
 /// other side.
-fn passing(road: &Road, node: i64, headings: [bool; 2]) -> Vec<(usize, usize)> {
+fn passing(road: &Road, node: i64, headings: [bool; 2]) -> Vec<VertexSide> {
     let last = road.line.nodes.len() - 1;
     let arrives = |vertex: usize| [headings[0] && vertex > 0, headings[1] && vertex < last];
     let of_vertex = |vertex| {
-        arrives(vertex).into_iter().enumerate().filter(|(_, on)| *on).map(move |(heading, _)| (vertex, heading))
+        arrives(vertex)
+            .into_iter()
+            .enumerate()
+            .filter(|(_, on)| *on)
+            .map(move |(heading, _)| VertexSide { vertex, heading })
     };
     vertices(road, node).into_iter().flat_map(of_vertex).collect()
 }
 
 /// The way on the side of a cut from which vehicles with this heading come.
-fn way(road: &Road, (vertex, heading): (usize, usize)) -> i64 {
+fn way(road: &Road, VertexSide { vertex, heading }: VertexSide) -> i64 {
     let begins =
         if heading == 0 { road.cuts.iter().rev().find(|cut| **cut < vertex).copied().unwrap_or(0) } else { vertex };
     road.way(begins)
@@ -151,7 +164,7 @@ pub(super) fn restrictions(roads: &[Road], turns: &[Turn]) -> Vec<Restriction> {
 
 fn restriction(roads: &[Road], turn: &Turn) -> Restriction {
     let (from, to) = (&roads[turn.from], &roads[turn.to]);
-    let ways = |road: &Road, sides: &[(usize, usize)]| {
+    let ways = |road: &Road, sides: &[VertexSide]| {
         let mut ways: Vec<i64> = sides.iter().map(|&side| way(road, side)).collect();
         ways.sort_unstable();
         ways.dedup();
@@ -191,7 +204,7 @@ fn between(road: &Road, enter: i64, leave: i64) -> Vec<i64> {
 
 /// What a sign would say. The ways decide; the name is for people.
 fn kind(from: &Road, to: &Road, turn: &Turn) -> RestrictionKind {
-    let step = |road: &Road, (vertex, heading): (usize, usize)| {
+    let step = |road: &Road, VertexSide { vertex, heading }: VertexSide| {
         let before = if heading == 0 { vertex.saturating_sub(1) } else { vertex + 1 };
         let place = |vertex: usize| road.line.places.get(vertex).copied().unwrap_or(road.line.places[0]);
         direction(place(before), place(vertex))

@@ -7,7 +7,7 @@ use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};
-use crate::turns::{LengthClass, Planner, TurnCorridors, TurnPath, turn_on};
+use crate::turns::{LengthClass, Planner, TurnCorridors, TurnEdges, TurnPath, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The usual number of simple paths of a turn.
@@ -94,7 +94,7 @@ impl MadeTurns {
             found.map(|(_, line)| line.as_ref()).ok_or(UnknownReason::Geometry)
         };
         let (network, policy, params) = (strokes.network(), strokes.settings().policy, strokes.turn_params());
-        turn_on(network, (*movement, arcs), &line, policy, params, reach)
+        turn_on(network, TurnEdges { movement: *movement, through: arcs }, &line, policy, params, reach)
     }
 
     fn best(&self, made: &TurnCorridors, options: &Options) -> Option<(TurnPath, SpanResult)> {

@@ -1,7 +1,16 @@
 //! What the examples of the documentation stand on.
 
-/// The drawn region, certified for a tug with four trailers. The folder goes with the first value.
-pub fn demo_region(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
+/// The drawn region without turns, certified for a tug with four trailers. The folder goes with the first value.
+pub fn demo_region() -> (tempfile::TempDir, std::path::PathBuf) {
+    certified(false)
+}
+
+/// As [`demo_region`], with turns.
+pub fn demo_region_with_turns() -> (tempfile::TempDir, std::path::PathBuf) {
+    certified(true)
+}
+
+fn certified(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
     use netcert::pipeline::{Ingest, Selection, ingest};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("demo.gpkg");

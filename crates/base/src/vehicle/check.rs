@@ -6,7 +6,7 @@
 use std::fmt;
 
 use super::class::Classes;
-use super::collide::{self, Clash};
+use super::collide::{self, Clash, Ends};
 use super::definition::{VehicleDefinition, closure_m};
 use super::{Unit, Vehicle};
 
@@ -69,7 +69,7 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPa
         }
         // Bodies that already overlap when the vehicle is straight have been reported.
         if check.faults.len() == found {
-            check.turning(&vehicle.units, true);
+            check.turning(&vehicle.units, Ends::Round);
         }
     }
     check.faults
@@ -82,7 +82,7 @@ pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Field
         check.vehicle = index;
         check.label = format!("vehicle {:?}", shown(&definition.id));
         let vehicle = definition.vehicle();
-        check.turning(&vehicle.units, false);
+        check.turning(&vehicle.units, Ends::Square);
     }
     check.faults
 }
@@ -228,24 +228,24 @@ impl Check<'_> {
 
     /// Hinge limits that overlapping bodies keep the hinge from reaching. If even rounded ends overlap, the limit is a
     /// fault, otherwise a warning.
-    fn turning(&mut self, units: &[Unit], impossible: bool) {
-        for clash in collide::clashes(units).into_iter().filter(|clash| clash.rounded == impossible) {
+    fn turning(&mut self, units: &[Unit], ends: Ends) {
+        for clash in collide::clashes(units).into_iter().filter(|clash| clash.ends == ends) {
             let Clash { hinge, units: (ahead, behind), angle_deg, .. } = clash;
             let Some(unit) = units.get(hinge) else { continue };
             let limit_deg = (unit.max_articulation_rad.to_degrees() * 1e9).round() / 1e9;
             let who = format!("the bodies of units {} and {}", ahead + 1, behind + 1);
-            match (angle_deg > 0.0, impossible) {
+            match (angle_deg > 0.0, ends) {
                 (false, _) => {
                     let problem = format!("{who} overlap when the vehicle is straight");
                     self.fault(Some((hinge, unit)), "front_overhang_m", problem);
                 }
-                (true, true) => {
+                (true, Ends::Round) => {
                     let problem = format!(
                         "{limit_deg} cannot be reached: {who} meet at {angle_deg}° even if their ends are round"
                     );
                     self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
                 }
-                (true, false) => {
+                (true, Ends::Square) => {
                     let problem = format!(
                         "{limit_deg} is reached only by bodies with rounded corners: as rectangles, {who} meet at \
                          {angle_deg}°"

@@ -19,6 +19,15 @@ pub(crate) const TOUCH_M: f64 = 0.05;
 /// 0.3 or more.
 const FIFTH_WHEEL_MOST: f64 = 0.28;
 
+/// The ends of bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// Half circles. Bodies that overlap even so cannot be built.
+    Round,
+    /// With corners, which alone overlap.
+    Square,
+}
+
 /// Two bodies that overlap at some angle of a hinge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clash {
@@ -28,8 +37,8 @@ pub(crate) struct Clash {
     pub(crate) units: (usize, usize),
     /// Hinge angle of the overlap, degrees; not above the hinge's limit.
     pub(crate) angle_deg: f64,
-    /// Whether the bodies overlap even with rounded ends. Otherwise only their corners overlap.
-    pub(crate) rounded: bool,
+    /// With what ends the bodies overlap.
+    pub(crate) ends: Ends,
 }
 
 /// Whether `unit` is a dolly or turntable axle: a drawbar draws it, and the next unit's body lies over it.
@@ -52,10 +61,12 @@ pub(crate) fn carries(units: &[Unit], unit: usize) -> bool {
 /// The first overlap at each hinge: with rounded ends if there is one, otherwise of the corners alone. Overlaps of the
 /// straight vehicle (`angle_deg` 0) are included.
 pub(crate) fn clashes(units: &[Unit]) -> Vec<Clash> {
-    (1..units.len()).filter_map(|hinge| first(units, hinge, true).or_else(|| first(units, hinge, false))).collect()
+    (1..units.len())
+        .filter_map(|hinge| first(units, hinge, Ends::Round).or_else(|| first(units, hinge, Ends::Square)))
+        .collect()
 }
 
-fn first(units: &[Unit], hinge: usize, rounded: bool) -> Option<Clash> {
+fn first(units: &[Unit], hinge: usize, ends: Ends) -> Option<Clash> {
     let limit_deg = units.get(hinge)?.max_articulation_rad.to_degrees();
     let steps = (limit_deg / STEP_DEG).floor() as u32;
     let angles = (0..=steps).map(|i| f64::from(i) * STEP_DEG).chain([limit_deg]);
@@ -64,9 +75,12 @@ fn first(units: &[Unit], hinge: usize, rounded: bool) -> Option<Clash> {
         for behind in hinge..units.len() {
             for ahead in 0..hinge {
                 let (Some(a), Some(b)) = (bodies.get(ahead), bodies.get(behind)) else { continue };
-                let meet = if rounded { a.rounded_meets(b) } else { a.meets(b) };
+                let meet = match ends {
+                    Ends::Round => a.rounded_meets(b),
+                    Ends::Square => a.meets(b),
+                };
                 if meet && may_not_meet(units, ahead, behind) {
-                    return Some(Clash { hinge, units: (ahead, behind), angle_deg, rounded });
+                    return Some(Clash { hinge, units: (ahead, behind), angle_deg, ends });
                 }
             }
         }

@@ -14,15 +14,27 @@ pub fn centre_constant(system: &System) -> f64 {
     (0..system.trailers).map(|_| TRANSLATION).product()
 }
 
+/// The axes of Q against those of Q^lim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// Both have the same axes.
+    Same,
+    /// The axes may differ.
+    Any,
+}
+
 /// μ^s of Eq. 9b for a fixed β at every hinge: the product of (b/a)²·β/(1 + β).
 ///
 /// Let S = (Q^lim)⁻¹ and A = 1 + 1/β. The derivative of Eq. 17 is X ↦ A·K X Kᵀ with K = (A + (1 + β) Q S)⁻¹. K is
 /// similar by S^½ to the inverse of a symmetric matrix ≥ A, so ‖K‖ ≤ √cond(S)/A with cond(S) = (b/a)². If Q and Q^lim
 /// have the same axes, K is symmetric and the factor (b/a)² drops out. A β that depends on Q (Eq. 18) is not covered.
 #[must_use]
-pub fn shape_constant(system: &System, beta: f64, same_axes: bool) -> f64 {
+pub fn shape_constant(system: &System, beta: f64, axes: Axes) -> f64 {
     let (a, b) = peak_sways_m(system.link_m, system.sway_rad);
-    let condition = if same_axes { 1.0 } else { (b / a).max(a / b).powi(2) };
+    let condition = match axes {
+        Axes::Same => 1.0,
+        Axes::Any => (b / a).max(a / b).powi(2),
+    };
     (0..system.trailers).map(|_| condition * beta / (1.0 + beta)).product()
 }
 
@@ -60,9 +72,9 @@ mod tests {
     fn no_pair_of_shapes_is_driven_further_apart_than_the_constants_say() {
         for beta in [0.13, 1.0, 7.5] {
             let aligned = steepest(|_| 0.0, beta);
-            assert!(aligned <= shape_constant(&SYSTEM, beta, true) * (1.0 + 1e-9), "{beta}: {aligned}");
+            assert!(aligned <= shape_constant(&SYSTEM, beta, Axes::Same) * (1.0 + 1e-9), "{beta}: {aligned}");
             let any = steepest(|t| 0.7 * t, beta);
-            assert!(any <= shape_constant(&SYSTEM, beta, false) * (1.0 + 1e-9), "{beta}: {any}");
+            assert!(any <= shape_constant(&SYSTEM, beta, Axes::Any) * (1.0 + 1e-9), "{beta}: {any}");
         }
     }
 

@@ -54,7 +54,7 @@ pub use drawn::{DrawnError, DrawnRoute, drawn_route};
 pub use ellipse::{Shape, Stet};
 pub use kinematics::{Chain, Link, follower_centre, follower_shape, no_slip_sway};
 pub use leeway::{Leeway, boundary_leeway};
-pub use lipschitz::{centre_constant, shape_constant};
+pub use lipschitz::{Axes, centre_constant, shape_constant};
 pub use plane::link_direction;
 pub use radius::last_radius_m;
 pub use reach::{in_reachable_set, peak_sways_m, reach_displacement, sway_displacement, sway_ellipse, sway_shape};

@@ -251,7 +251,8 @@ pub(super) fn shrunk(
     track: &Track,
     model: &Model,
     span: &Range<usize>,
-    (full, at_least): (&Minima, &Minima),
+    full: &Minima,
+    at_least: &Minima,
     at_full: &Least,
 ) -> Least {
     let floor = gamma(model, 0.0);

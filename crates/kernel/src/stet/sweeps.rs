@@ -294,7 +294,7 @@ impl<'m> Sweeps<'m> {
         let at_full = self.at_full(span);
         match &self.least {
             Some(least) if at_full.fails() => {
-                spans::shrunk(&self.track, self.model, span, (self.best(span), least), &at_full).result()
+                spans::shrunk(&self.track, self.model, span, self.best(span), least, &at_full).result()
             }
             _ => at_full.result(),
         }

@@ -78,9 +78,11 @@ impl Effect {
         let strange = strange_mode || when.is_some_and(When::is_strange);
         match rule.access_type.as_deref() {
             Some("allowed" | "designated") => (Self::allow(when, rank, strange), None),
-            Some("denied") => Self::deny(when, rank, strange_mode, strange),
-            // An unknown kind of rule may close the road.
-            _ => Self::deny(when, rank, strange_mode, true),
+            kind => {
+                let rank = rank.or(strange_mode.then_some(Rank::Lorry));
+                // An unknown kind of rule may close the road.
+                Self::deny(when, rank, strange || kind != Some("denied"))
+            }
         }
     }
 
@@ -108,17 +110,8 @@ impl Effect {
         Self::Allow { rank, headings: headings(Some(when)), to }
     }
 
-    fn deny(
-        when: Option<&When>,
-        rank: Option<Rank>,
-        strange_mode: bool,
-        strange: bool,
-    ) -> (Self, Option<&'static str>) {
-        let rank = match rank {
-            Some(rank) => rank,
-            None if strange_mode => Rank::Lorry,
-            None => return (Self::None("other_vehicles"), None),
-        };
+    fn deny(when: Option<&When>, rank: Option<Rank>, strange: bool) -> (Self, Option<&'static str>) {
+        let Some(rank) = rank else { return (Self::None("other_vehicles"), None) };
         let Some(when) = when else {
             let note = strange.then_some("not_understood");
             return (Self::Deny { rank, headings: [true; 2], to: Permission::No, direction: false }, note);

@@ -42,10 +42,21 @@ pub(super) struct Room {
     pub(super) surface: Across,
 }
 
+/// What a link is driven for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Before the stroke, or before the turn round it that counts.
+    LeadIn,
+    /// Its edge is certified there.
+    Counted,
+    /// After the turn that counts.
+    Tail,
+}
+
 /// A link on the line to be smoothed, at arc lengths `from..to`. A link may come several times.
 pub(super) struct DrivenLink {
     pub(super) link: usize,
-    pub(super) counted: bool,
+    pub(super) role: Role,
     pub(super) from: f64,
     pub(super) to: f64,
     /// Arc length of every vertex of the link.
@@ -65,7 +76,7 @@ pub(super) struct Course {
 pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
     let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(links.len()), end: 0.0 };
     for link in 0..links.len() {
-        course.drive(links, link, link >= approach);
+        course.drive(links, link, if link >= approach { Role::Counted } else { Role::LeadIn });
     }
     course.end = course.line.length();
     course
@@ -93,16 +104,16 @@ pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
     let beyond = count(TAIL_M + BEYOND_M, &|i| i % n);
     let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(before + n + beyond), end: 0.0 };
     for i in 0..before {
-        course.drive(links, n - 1 - (before - 1 - i) % n, false);
+        course.drive(links, n - 1 - (before - 1 - i) % n, Role::LeadIn);
     }
     for link in 0..n {
-        course.drive(links, link, true);
+        course.drive(links, link, Role::Counted);
     }
     for i in 0..beyond {
         if i == tail {
             course.end = course.line.length();
         }
-        course.drive(links, i % n, false);
+        course.drive(links, i % n, Role::Tail);
     }
     if course.end <= 0.0 {
         course.end = course.line.length();
@@ -111,10 +122,10 @@ pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
 }
 
 impl Course {
-    fn drive(&mut self, links: &[Link<'_>], link: usize, counted: bool) {
+    fn drive(&mut self, links: &[Link<'_>], link: usize, role: Role) {
         let at: Vec<f64> = links[link].points.iter().map(|&p| self.line.push(p)).collect();
         let (from, to) = (at.first().copied().unwrap_or(0.0), at.last().copied().unwrap_or(0.0));
-        self.driven.push(DrivenLink { link, counted, from, to, at, aside_m: 0.0 });
+        self.driven.push(DrivenLink { link, role, from, to, at, aside_m: 0.0 });
     }
 
     /// Removes the jogs of the line where two carriageways meet a road. Returns the jogs, placed on the new line, and

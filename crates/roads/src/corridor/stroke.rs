@@ -3,7 +3,7 @@
 //! Only the part between a stroke's first and last edge is certified. Approach, lead-in and tail are driven. An edge
 //! that the extract cuts is entered straight, like any first edge. Turns off the stroke have corridors of their own.
 
-use super::course::{Course, DrivenLink, Link};
+use super::course::{Course, DrivenLink, Link, Role};
 use super::laid::{LaidOut, Sections};
 use super::merge::Jog;
 use super::profile::{Across, CHANGE_M, Gap, MIDDLE, Stretch, limit_offset, profile};
@@ -90,7 +90,8 @@ impl LaidOut<'_> {
             return Err(UnknownReason::Geometry);
         }
         let cut = Cut { corridor: &corridor, arc: &arc, smoothed, folded: &folded, torn: &corridor.torn(), params };
-        let spans = course.driven.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
+        let spans =
+            course.driven.iter().filter(|p| p.role == Role::Counted).map(|p| cut.span(p, &links[p.link])).collect();
         let stations = |from: f64, to: f64| {
             let station = |u: f64| ((arc.at(u) / corridor.spacing_m).round() as usize).min(corridor.len() - 1);
             station(from)..station(to) + 1

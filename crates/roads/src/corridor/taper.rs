@@ -107,8 +107,8 @@ fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
     let allowed = |s: &Stretch, side: &Stretch| {
         s.two_way == side.two_way && swept.within(if alike { s.surface } else { s.shift })
     };
-    let after_m = room_m(stretches, k, false, &|s| allowed(s, b));
-    let before_m = room_m(stretches, k, true, &|s| allowed(s, a));
+    let after_m = room_m(stretches, k, Way::On, &|s| allowed(s, b));
+    let before_m = room_m(stretches, k, Way::Back, &|s| allowed(s, a));
     let (asked_m, least_m) = (STEEPEST * a.ratio.max(b.ratio) * by_m.abs(), STEEPEST * LEAST_RATIO * by_m.abs());
     let at = a.to;
     let (from, to) = match wider(a, b) {
@@ -120,6 +120,13 @@ fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
         }
     };
     (to - from >= least_m).then_some(Ramp { from, to, by_m, node: k })
+}
+
+/// Along the stroke from a node, or against it.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    On,
+    Back,
 }
 
 /// The side of a node with the wider surface.
@@ -141,7 +148,8 @@ fn wider(a: &Stretch, b: &Stretch) -> Wider {
 
 /// Length from the node after stretch `k` on which the stretches allow a taper. It ends at the next jump, or halfway to
 /// a jump that may need the other half.
-fn room_m(stretches: &[Stretch], k: usize, backwards: bool, allowed: &dyn Fn(&Stretch) -> bool) -> f64 {
+fn room_m(stretches: &[Stretch], k: usize, way: Way, allowed: &dyn Fn(&Stretch) -> bool) -> f64 {
+    let backwards = way == Way::Back;
     let (mut room_m, mut i) = (0.0, if backwards { k } else { k + 1 });
     while let Some(stretch) = stretches.get(i).filter(|stretch| allowed(stretch)) {
         room_m += stretch.to - stretch.from;

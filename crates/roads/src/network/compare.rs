@@ -30,7 +30,7 @@ impl Differences {
             .zip(&new.edges)
             .map(|(index, edge)| {
                 let there = *by_id.get(&edge.id)?;
-                same_edge((old, there), (new, index)).then_some(there)
+                same_edge(old, there, new, index).then_some(there)
             })
             .collect();
         let mut edges: FxHashSet<i64> =
@@ -53,7 +53,7 @@ impl Differences {
 }
 
 /// Whether two edges of one id have the same line, strips, limits and road.
-fn same_edge((old, a): (&Network, u32), (new, b): (&Network, u32)) -> bool {
+fn same_edge(old: &Network, a: u32, new: &Network, b: u32) -> bool {
     let (Some(x), Some(y)) = (old.edges.get(a as usize), new.edges.get(b as usize)) else { return false };
     // The patterns have no `..`, so a new field does not compile until it is compared or left out here.
     let Edge { id, road: _, from_node, to_node, direction, shape: _, narrowings: _, legal: _, barred, cut: _ } = x;

@@ -15,6 +15,13 @@ const MOST_ENDS: usize = 16;
 const U_TURN_DEG: f64 = 150.0;
 const HEADING_M: f64 = 15.0;
 
+/// An end of an edge.
+#[derive(Clone, Copy)]
+enum End {
+    From,
+    To,
+}
+
 /// The step from one edge into the next.
 type Kinds<'a> = &'a dyn Fn(u32, u32) -> MovementKind;
 
@@ -32,7 +39,7 @@ impl Network {
         for first in 0..self.edges.len() as u32 {
             let Some(length_m) = self.inside(first, INSIDE_M) else { continue };
             let entries: Vec<u32> =
-                self.ends_at(first, true).filter(|&from| kind(from, first) == MovementKind::Turn).collect();
+                self.beside(first, End::From).filter(|&from| kind(from, first) == MovementKind::Turn).collect();
             if entries.is_empty() {
                 continue;
             }
@@ -61,7 +68,7 @@ impl Network {
     /// Second edges inside, after a first one.
     fn second<'a>(&'a self, first: u32, most_m: f64, kind: Kinds<'a>) -> impl Iterator<Item = u32> + 'a {
         let start = self.edges[first as usize].from_node;
-        self.ends_at(first, false).filter(move |&second| {
+        self.beside(first, End::To).filter(move |&second| {
             kind(first, second) != MovementKind::UTurn
                 && self.edges[second as usize].to_node != start
                 && self.inside(second, most_m).is_some()
@@ -73,7 +80,7 @@ impl Network {
         let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else { return Vec::new() };
         let nodes = [self.edges[first as usize].from_node, self.edges[last as usize].from_node];
         let exits = self
-            .ends_at(last, false)
+            .beside(last, End::To)
             .filter(|&to| kind(last, to) == MovementKind::Turn && !nodes.contains(&self.edges[to as usize].to_node));
         let exits: Vec<u32> = exits.collect();
         let mut ways = Vec::new();
@@ -87,13 +94,20 @@ impl Network {
         ways
     }
 
-    /// Edges, no arcs of roundabouts, that end where an edge begins (`before`), or begin where it ends.
-    fn ends_at(&self, edge: u32, before: bool) -> impl Iterator<Item = u32> + '_ {
+    /// Edges, no arcs of roundabouts, that end where an edge begins, or begin where it ends.
+    fn beside(&self, edge: u32, end: End) -> impl Iterator<Item = u32> + '_ {
         let e = &self.edges[edge as usize];
-        let node = if before { e.from_node } else { e.to_node };
+        let node = match end {
+            End::From => e.from_node,
+            End::To => e.to_node,
+        };
         let meets = move |other: &u32| {
             let o = &self.edges[*other as usize];
-            *other != edge && (if before { o.to_node } else { o.from_node }) == node && !self.road(o).roundabout
+            let met = match end {
+                End::From => o.to_node,
+                End::To => o.from_node,
+            };
+            *other != edge && met == node && !self.road(o).roundabout
         };
         self.crossings.at(node).iter().copied().filter(meets)
     }

@@ -93,7 +93,7 @@ where
         built.network.shapes.extend(positions());
         let edges = built.network.edges.len();
         for piece in &cut.pieces {
-            self.add_piece((&road, oneway), cut, piece, base, built);
+            self.add_piece(&road, oneway, cut, piece, base, built);
         }
         number(&mut built.network.edges[edges..], way.id);
         if self.vertices.go_on_over_the_antimeridian() {
@@ -115,7 +115,8 @@ where
 
     fn add_piece(
         &self,
-        (road, oneway): (&Road, Oneway),
+        road: &Road,
+        oneway: Oneway,
         cut: &CutWay,
         piece: &RoadPiece,
         base: usize,

@@ -127,6 +127,13 @@ impl Leaving {
 /// What a rule forbids, sorted, and how it was read.
 type Read = (Reading, Vec<Vec<u32>>);
 
+/// The role of a way in a restriction.
+#[derive(Clone, Copy, PartialEq)]
+enum Member {
+    From,
+    To,
+}
+
 struct Resolver<'n> {
     network: &'n Network,
     nodes: &'n NodeTable,
@@ -165,8 +172,8 @@ impl Resolver<'_> {
             via => via.iter().filter_map(|&id| self.vertices.node(self.nodes, id)).collect(),
         };
         reading.via_found = via.is_empty();
-        let from = self.at_each(&nodes, &restriction.from, false, reading);
-        let to = self.at_each(&nodes, &restriction.to, true, reading);
+        let from = self.at_each(&nodes, &restriction.from, Member::From, reading);
+        let to = self.at_each(&nodes, &restriction.to, Member::To, reading);
         let mut on_network = false;
         let mut all = Vec::new();
         for (node, (from, to)) in nodes.iter().zip(from.iter().zip(&to)) {
@@ -194,9 +201,10 @@ impl Resolver<'_> {
         nodes
     }
 
-    /// By node: for each way, its edges that end there, or begin there if they are to `leave`. Without ways, all edges there count as
+    /// By node: for each way, its edges that end there, or begin there if it is a `to`. Without ways, all edges there count as
     /// those of one way. A way that is at none of the nodes stands for the road that goes on to it.
-    fn at_each(&self, nodes: &[i64], ways: &[i64], leave: bool, reading: &mut Reading) -> Vec<Vec<Vec<u32>>> {
+    fn at_each(&self, nodes: &[i64], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<u32>>> {
+        let leave = member == Member::To;
         if ways.is_empty() {
             let all = |&node: &i64| vec![if leave { self.leaving_at(node) } else { self.arriving_at(node) }.to_vec()];
             return nodes.iter().map(all).collect();
@@ -283,7 +291,7 @@ impl Resolver<'_> {
         let mut paths = Vec::new();
         let mut steps = 0;
         for &f in &from {
-            self.follow((&mut vec![f], &mut steps), via, Some(&to), &mut paths);
+            self.follow(&mut vec![f], &mut steps, via, Some(&to), &mut paths);
         }
         if paths.is_empty() && !to.is_empty() {
             let mut wander = Wander { resolver: self, via, to: &to, paths: Vec::new(), steps: 0 };
@@ -295,7 +303,7 @@ impl Resolver<'_> {
         if paths.is_empty() && (kind.only || restriction.to.is_empty()) {
             // Where the last way ends, every way on may be the wrong one.
             for &f in &from {
-                self.follow((&mut vec![f], &mut steps), via, None, &mut paths);
+                self.follow(&mut vec![f], &mut steps, via, None, &mut paths);
             }
             reading.no_destination |= !paths.is_empty();
         }
@@ -344,7 +352,8 @@ impl Resolver<'_> {
     /// driven in one direction.
     fn follow(
         &self,
-        (path, steps): (&mut Vec<u32>, &mut usize),
+        path: &mut Vec<u32>,
+        steps: &mut usize,
         via: &[i64],
         to: Option<&[u32]>,
         paths: &mut Vec<Vec<u32>>,
@@ -372,7 +381,7 @@ impl Resolver<'_> {
                 if path.len() > MOST_VIA_EDGES || paths.len() > MOST_SEQUENCES || *steps > MOST_STEPS {
                     break;
                 }
-                self.follow((&mut *path, &mut *steps), rest, to, paths);
+                self.follow(path, steps, rest, to, paths);
                 edge = self.along(next);
             }
             path.truncate(length);

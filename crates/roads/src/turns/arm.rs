@@ -180,6 +180,13 @@ pub(super) struct Arm {
     pub(super) complete: [bool; 2],
 }
 
+/// Whether the approach before the stroke's own edges counts as road, too.
+#[derive(Clone, Copy, PartialEq)]
+enum Approach {
+    Counts,
+    LeftOut,
+}
+
 impl Arm {
     /// The end of edge `edge` on `line`, with up to `before_m` and `after_m` of road.
     pub(super) fn arriving(
@@ -192,7 +199,7 @@ impl Arm {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),
-            None => Self::window(line, span.stations.end - 1, (frame, strip), reach_m, true),
+            None => Self::window(line, span.stations.end - 1, frame, strip, reach_m, Approach::Counts),
         }
     }
 
@@ -207,28 +214,29 @@ impl Arm {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),
-            None => Self::window(line, span.stations.start, (frame, strip), reach_m, false),
+            None => Self::window(line, span.stations.start, frame, strip, reach_m, Approach::LeftOut),
         }
     }
 
     /// All stations of `line`.
     pub(super) fn whole(line: &StrokeLine, frame: Frame, strip: Policy) -> Result<Self, UnknownReason> {
         let length_m = line.stations() as f64 * line.made.corridor.spacing_m;
-        Self::window(line, 0, (frame, strip), [0.0, length_m], true)
+        Self::window(line, 0, frame, strip, [0.0, length_m], Approach::Counts)
     }
 
-    /// A window of `line`. With `lead`, the approach before the stroke's own edges counts as road too.
+    /// A window of `line`.
     fn window(
         line: &StrokeLine,
         node: usize,
-        (frame, strip): (Frame, Policy),
+        frame: Frame,
+        strip: Policy,
         [before_m, after_m]: [f64; 2],
-        lead: bool,
+        approach: Approach,
     ) -> Result<Self, UnknownReason> {
         let c = &line.made.corridor;
         let stations = |m: f64| (m / c.spacing_m).ceil() as usize;
         let begins = if line.closed { 0 } else { line.made.spans.first().map_or(0, |s| s.stations.start) };
-        let first = node.saturating_sub(stations(before_m)).max(if lead { 0 } else { begins });
+        let first = node.saturating_sub(stations(before_m)).max(if approach == Approach::Counts { 0 } else { begins });
         let end = (node + stations(after_m) + 1).min(c.len());
         if end < first + 2 {
             return Err(UnknownReason::Geometry);

@@ -10,7 +10,7 @@ use super::arm::StrokeLine;
 use super::arms::Arms;
 use super::crossing;
 use super::junction::Junction;
-use super::{LengthClass, TurnParams};
+use super::{LengthClass, TurnEdges, TurnParams};
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
@@ -28,7 +28,7 @@ impl Complex {
     /// Prepares the passage. `line` gives the line of an edge's stroke.
     pub(super) fn new<'l>(
         network: &Network,
-        (movement, through): (Movement, &[u32]),
+        TurnEdges { movement, through }: TurnEdges<'_>,
         line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
         policy: Policy,
         params: &TurnParams,

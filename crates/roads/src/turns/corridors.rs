@@ -50,22 +50,25 @@ enum Way {
 
 impl TurnCorridors {
     pub(super) fn at(junction: Junction, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
-        let area = junction.area();
-        Self::on(area, (network, frame), junction.arms.turn_rad(), Way::Direct(Box::new(junction.arms)))
+        let (area, kerb_radius_m) = junction.area();
+        Self::on(area, kerb_radius_m, network, frame, junction.arms.turn_rad(), Way::Direct(Box::new(junction.arms)))
     }
 
     pub(super) fn across(complex: Complex, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
-        let area = complex.area();
-        Self::on(area, (network, frame), complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
+        let (area, kerb_radius_m) = complex.area();
+        Self::on(area, kerb_radius_m, network, frame, complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
     }
 
     pub(super) fn over(passage: Passage, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
-        Self::on(passage.area(), (network, frame), passage.turn_rad(), Way::Passage(Box::new(passage)))
+        let (area, kerb_radius_m) = passage.area();
+        Self::on(area, kerb_radius_m, network, frame, passage.turn_rad(), Way::Passage(Box::new(passage)))
     }
 
     fn on(
-        (area, kerb_radius_m): (MultiPolygon, Option<f64>),
-        (network, frame): (&Network, Frame),
+        area: MultiPolygon,
+        kerb_radius_m: Option<f64>,
+        network: &Network,
+        frame: Frame,
         turn_rad: f64,
         way: Way,
     ) -> Result<Self, UnknownReason> {

@@ -42,33 +42,43 @@ impl DrawnCorner {
         let (from, to) = (road(0, frame, 0.0, from_m), road(1, frame, -self.turn_rad, to_m));
         let before_m = length_class.run_in_m() + length_class.counted_before_m() + LEAVE_M;
         let after_m = length_class.counted_after_m() + MEET_M + JOIN_M;
-        let arriving = Arm::arriving(&from, edge(0, false), frame, Policy::Lane, [before_m, MEET_M])?;
-        let leaving = Arm::leaving(&to, edge(1, true), frame, Policy::Lane, [MEET_M, after_m])?;
+        let arriving = Arm::arriving(&from, edge(0, Half::Before), frame, Policy::Lane, [before_m, MEET_M])?;
+        let leaving = Arm::leaving(&to, edge(1, Half::After), frame, Policy::Lane, [MEET_M, after_m])?;
         let junction = Junction::drawn(Arms::new(arriving, leaving, [0, 1], length_class), self.kerb_radius_m);
         TurnCorridors::at(junction, &Network::default(), frame)
     }
 }
 
-/// The edge of a road before or after the crossing.
-fn edge(road: u32, after: bool) -> u32 {
-    2 * road + u32::from(after)
+/// The half of a road before or after the crossing.
+#[derive(Clone, Copy)]
+enum Half {
+    Before,
+    After,
+}
+
+/// The edge of one half of a road.
+fn edge(road: u32, half: Half) -> u32 {
+    2 * road + half as u32
 }
 
 /// A straight road through the origin.
 fn road(number: u32, frame: Frame, heading: f64, width_m: f64) -> StrokeLine {
     let (sin, cos) = heading.sin_cos();
-    let half = (ROAD_M / SPACING_M) as usize;
-    let straight = vec![0.0; 2 * half + 1];
+    let middle = (ROAD_M / SPACING_M) as usize;
+    let straight = vec![0.0; 2 * middle + 1];
     let start = [-ROAD_M * cos, -ROAD_M * sin];
     let corridor = Corridor::from_curvature(SPACING_M, start, heading, &straight, 0.5 * width_m, 0.5 * width_m);
-    let span = |after: bool| EdgeSpan {
-        edge: edge(number, after),
-        stations: if after { half..2 * half + 1 } else { 0..half + 1 },
+    let span = |half: Half| EdgeSpan {
+        edge: edge(number, half),
+        stations: match half {
+            Half::Before => 0..middle + 1,
+            Half::After => middle..2 * middle + 1,
+        },
         min_radius_m: f64::INFINITY,
         centreline_deviation_m: 0.0,
         unknown: None,
     };
-    let spans = vec![span(false), span(true)];
+    let spans = vec![span(Half::Before), span(Half::After)];
     StrokeLine::drawn(number, StrokeCorridor { frame, corridor, spans, tapers: Vec::new() })
 }
 

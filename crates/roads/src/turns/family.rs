@@ -61,11 +61,21 @@ pub(super) fn seeds(arms: &Arms) -> Vec<PathCode> {
     codes
 }
 
-/// The few shapes at one end of a roundabout's passage, by number: entering the ring, or leaving it. The ring bends away
+/// An end of a roundabout's passage.
+#[derive(Clone, Copy)]
+pub(super) enum RingEnd {
+    Entry,
+    Exit,
+}
+
+/// The few shapes at one end of a roundabout's passage, by number. The ring bends away
 /// from the turn, so its tangent meets the road farther from the node than the path touches the ring. On the road's
 /// side the next larger distance is therefore used.
-pub(super) fn few(arms: &Arms, onto: bool) -> Vec<Shape> {
-    let sides = |road_m: f64, ring_m: f64| if onto { [road_m, ring_m] } else { [ring_m, road_m] };
+pub(super) fn few(arms: &Arms, end: RingEnd) -> Vec<Shape> {
+    let sides = |road_m: f64, ring_m: f64| match end {
+        RingEnd::Entry => [road_m, ring_m],
+        RingEnd::Exit => [ring_m, road_m],
+    };
     let mut shapes = Vec::new();
     for (swing, places) in FEW {
         for w in FROM_CORNER_M[places].windows(2) {

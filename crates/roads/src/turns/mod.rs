@@ -221,6 +221,23 @@ pub struct TurnPath {
     pub min_radius_m: f64,
 }
 
+/// The edges of a turn or passage.
+#[derive(Debug, Clone, Copy)]
+pub struct TurnEdges<'t> {
+    /// The edges before and after it.
+    pub movement: Movement,
+    /// The edges between, in driving order, for a passage; otherwise empty.
+    pub through: &'t [u32],
+}
+
+impl TurnFacts {
+    /// Its edges.
+    #[must_use]
+    pub fn edges(&self) -> TurnEdges<'_> {
+        TurnEdges { movement: self.movement, through: &self.through }
+    }
+}
+
 /// The corridors of a turn, from the network alone.
 ///
 /// # Errors
@@ -232,7 +249,7 @@ pub fn turn_corridors(
     params: &TurnParams,
     length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
-    on_lines_of(network, (movement, &[]), policy, params, length_class)
+    on_lines_of(network, TurnEdges { movement, through: &[] }, policy, params, length_class)
 }
 
 /// The corridors of a turn or passage, as [`turn_corridors`].
@@ -246,17 +263,17 @@ pub fn corridors_of(
     params: &TurnParams,
     length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
-    on_lines_of(network, (turn.movement, &turn.through), policy, params, length_class)
+    on_lines_of(network, turn.edges(), policy, params, length_class)
 }
 
 fn on_lines_of(
     network: &Network,
-    over: (Movement, &[u32]),
+    turn: TurnEdges<'_>,
     policy: Policy,
     params: &TurnParams,
     length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
-    let edges = [over.0.from, over.0.to].into_iter().chain(over.1.iter().copied());
+    let edges = [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied());
     let strokes = edges.map(|edge| Some((edge, stroke_of(network, edge)?)));
     let strokes: Vec<(u32, u32)> = strokes.collect::<Option<_>>().ok_or(UnknownReason::Geometry)?;
     let mut lines: Vec<StrokeLine> = Vec::new();
@@ -269,10 +286,10 @@ fn on_lines_of(
         let stroke = strokes.iter().find(|of| of.0 == edge).map(|of| of.1);
         lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
     };
-    turn_on(network, over, &line, policy, params, length_class)
+    turn_on(network, turn, &line, policy, params, length_class)
 }
 
-/// The corridors of a turn, or of a passage over edges, given in driving order after the movement. `line` gives the line of an
+/// The corridors of a turn, or of a passage over edges. `line` gives the line of an
 /// edge's stroke; it is asked for the movement's edges and those between.
 ///
 /// All have joints, frame and stations alike, so a route joins them in the same way.
@@ -281,23 +298,23 @@ fn on_lines_of(
 /// The reason if one of the edges has no corridor, or if a ring is too small.
 pub fn turn_on<'l>(
     network: &Network,
-    (movement, through): (Movement, &[u32]),
+    turn: TurnEdges<'_>,
     line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
     policy: Policy,
     params: &TurnParams,
     length_class: LengthClass,
 ) -> Result<TurnCorridors, UnknownReason> {
+    let TurnEdges { movement, through } = turn;
     let (from, to) = (line(movement.from)?, line(movement.to)?);
     let frame = from.made.frame;
-    let over = (movement, through);
     match (network.passage_kind(through), through.first()) {
         (Some(PassageKind::Roundabout), Some(&arc)) => {
             let passage =
-                roundabout::Passage::new(network, over, [from, line(arc)?, to], policy, params, length_class)?;
+                roundabout::Passage::new(network, turn, [from, line(arc)?, to], policy, params, length_class)?;
             TurnCorridors::over(passage, network, frame)
         }
         (Some(PassageKind::Complex), _) => TurnCorridors::across(
-            complex::Complex::new(network, over, line, policy, params, length_class)?,
+            complex::Complex::new(network, turn, line, policy, params, length_class)?,
             network,
             frame,
         ),

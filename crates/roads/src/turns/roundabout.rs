@@ -11,10 +11,10 @@ use super::area::stretch;
 use super::arm::{Arm, StrokeLine};
 use super::arms::PathLine;
 use super::code::Shape;
-use super::family::{FEW_NUMBERS, few};
+use super::family::{FEW_NUMBERS, RingEnd, few};
 use super::junction::Junction;
 use super::path::{STEP_M, hermite};
-use super::{LengthClass, TurnParams};
+use super::{LengthClass, TurnEdges, TurnParams};
 use crate::corridor::Frame;
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
@@ -41,7 +41,7 @@ pub(super) struct Passage {
 impl Passage {
     pub(super) fn new(
         network: &Network,
-        (movement, through): (Movement, &[u32]),
+        TurnEdges { movement, through }: TurnEdges<'_>,
         [from, ring, to]: [&StrokeLine; 3],
         policy: Policy,
         params: &TurnParams,
@@ -64,8 +64,8 @@ impl Passage {
         let entry = junction(movement.from, first, [from, ring])?;
         let exit = junction(last, movement.to, [ring, to])?;
         Ok(Self {
-            entries: few(&entry.arms, true),
-            exits: few(&exit.arms, false),
+            entries: few(&entry.arms, RingEnd::Entry),
+            exits: few(&exit.arms, RingEnd::Exit),
             entry,
             exit,
             beyond: place(last)? < place(first)?,

@@ -11,7 +11,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::turns::{LengthClass, Planner, StrokeLine, TurnCorridors, turn_on};
+use crate::turns::{LengthClass, Planner, StrokeLine, TurnCorridors, TurnEdges, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
@@ -120,8 +120,8 @@ impl Turning<'_> {
             let stroke = self.stroke_of.get(edge as usize).copied();
             lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
         };
-        let over = (self.movement, self.join.arcs);
-        turn_on(network, over, &line, settings.policy, &settings.turn_params(), reach).ok()
+        let turn = TurnEdges { movement: self.movement, through: self.join.arcs };
+        turn_on(network, turn, &line, settings.policy, &settings.turn_params(), reach).ok()
     }
 
     /// Adds to `supposed` the least that makes the turn safe: a kerb radius, else a paved junction, else wider roads beside it, else all

@@ -45,7 +45,7 @@ fn random_vehicle(number: u64) -> Vehicle {
         let count = 1 + draw.below(5);
         let width_m = draw.between(0.8, 3.0);
         let longest_m = draw.log_between(2.0, 13.0);
-        let units: Vec<Unit> = (0..count).map(|i| unit(&mut draw, (i, count), width_m, longest_m)).collect();
+        let units: Vec<Unit> = (0..count).map(|i| unit(&mut draw, i, count, width_m, longest_m)).collect();
         let mut vehicle = Vehicle {
             id: format!("RANDOM-{number}"),
             name: format!("random vehicle {number}"),
@@ -70,7 +70,7 @@ fn random_vehicle(number: u64) -> Vehicle {
     }
 }
 
-fn unit(draw: &mut Draw, (i, count): (usize, usize), width_m: f64, longest_m: f64) -> Unit {
+fn unit(draw: &mut Draw, i: usize, count: usize, width_m: f64, longest_m: f64) -> Unit {
     let length = draw.between(0.3, 1.0) * longest_m;
     let hitch = if i + 1 == count { 0.0 } else { length * draw.between(-0.9, 1.9) };
     let front = if i == 0 { draw.between(0.1, 0.4) } else { draw.between(-0.6, 0.2) } * length;

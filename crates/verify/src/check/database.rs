@@ -17,7 +17,7 @@ use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
-use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use netcert_check::{Finding, Outcome, Reading, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
 
 /// Tolerance of widths, metres. Strips are measured across the way's line and widths across the corridor's centreline, which
@@ -137,7 +137,7 @@ impl SetClaim<'_> {
         if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
             return malformed(format!("the plan: {why}"));
         }
-        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), true) {
+        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), Reading::Lenient) {
             Ok(subject) => subject,
             // A stroke may have a place that no corridor fits. Only the verdicts unknown and forbidden are confirmed there.
             Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),

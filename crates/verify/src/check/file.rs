@@ -14,7 +14,7 @@ use netcert_check::Chain;
 use netcert_check::SweptVehicle;
 use netcert_check::plan;
 use netcert_check::printed;
-use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
+use netcert_check::{Finding, Outcome, Reading, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
 
 /// Tolerance of nominal places, metres: the error of chords of a quarter of a station in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;
@@ -99,8 +99,8 @@ const CLAIMS: [&str; 8] =
 impl Document {
     fn check(&self) -> Vec<(String, Outcome)> {
         let chain = Chain::new(&self.vehicle);
-        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), false);
-        let centred = Subject::new(&chain, &self.corridor, |_| 0.0, false);
+        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), Reading::Strict);
+        let centred = Subject::new(&chain, &self.corridor, |_| 0.0, Reading::Strict);
         let (along, centred) = match (along, centred) {
             (Ok(along), Ok(centred)) => (along, centred),
             (Err(e), _) | (_, Err(e)) => {

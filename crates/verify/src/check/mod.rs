@@ -22,6 +22,8 @@ mod turns;
 pub use database::{RowOutcome, SetClaim, SetReport};
 pub use file::{Report, certificate};
 pub use netcert_check::plan::shift;
-pub use netcert_check::{Chain, Finding, Interval, Outcome, RoadError, SpanClaim, Subject, TOLERANCE_M, Weight};
+pub use netcert_check::{
+    Chain, Finding, Interval, Outcome, Reading, RoadError, SpanClaim, Subject, TOLERANCE_M, Weight,
+};
 pub use rules::ENDED;
 pub use turns::TurnsClaim;

@@ -20,7 +20,7 @@ use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
-use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use netcert_check::{Finding, Outcome, Reading, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
 
 /// Number of rows that are checked together, so that the strokes that they need are made once.
@@ -204,7 +204,7 @@ impl TurnsClaim<'_> {
             Some(Err(reason)) => Err(*reason),
             None => Err(UnknownReason::Geometry),
         };
-        turn_on(self.network, (turn.movement, &turn.through), &line, self.policy, self.params, reach)
+        turn_on(self.network, turn.edges(), &line, self.policy, self.params, reach)
     }
 
     /// `safe` is the verdict that the row has if there is room.
@@ -231,7 +231,7 @@ impl TurnsClaim<'_> {
         if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
             return (Outcome::Malformed(format!("the plan: {why}")), 0.0);
         }
-        let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), true) {
+        let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), Reading::Lenient) {
             Ok(subject) => subject,
             Err(e) => return (Outcome::Malformed(format!("its corridor: {e}")), 0.0),
         };

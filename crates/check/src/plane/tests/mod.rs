@@ -10,7 +10,8 @@ use crate::areas::MOST_VERTICES;
 use crate::chain::Chain;
 use crate::claim::{SpanClaim, Weight};
 use crate::drawn::{chain, random, unit};
-use crate::feet::point;
+use crate::feet::{Foot, point};
+use crate::fit::Reading;
 use crate::hull::{to_segment, way};
 use crate::subject::Subject;
 use crate::vector::{framed, length};
@@ -57,12 +58,12 @@ fn claim(stations: Range<usize>, rsc_m: f64) -> SpanClaim {
 }
 
 fn confirmed(chain: &Chain, corridor: &Corridor, claim: &SpanClaim) -> bool {
-    Subject::new(chain, corridor, |_| 0.0, false).unwrap().check(std::slice::from_ref(claim))[0].is_empty()
+    Subject::new(chain, corridor, |_| 0.0, Reading::Strict).unwrap().check(std::slice::from_ref(claim))[0].is_empty()
 }
 
 /// The greatest RSC that is confirmed on some stations, to 0.1 mm.
 fn most(chain: &Chain, corridor: &Corridor, stations: Range<usize>) -> f64 {
-    let subject = Subject::new(chain, corridor, |_| 0.0, false).unwrap();
+    let subject = Subject::new(chain, corridor, |_| 0.0, Reading::Strict).unwrap();
     bisect(|rsc_m| subject.check(&[claim(stations.clone(), rsc_m)])[0].is_empty())
 }
 
@@ -109,7 +110,7 @@ fn a_narrower_area_is_refuted_and_the_place_is_named() {
     let chain = semi();
     let rsc_m = most(&chain, &straight(&[(0..160, vec![strip(2.2)])]), 70..90);
     let narrow = straight(&[(0..160, vec![strip(2.2 - 0.004)])]);
-    let subject = Subject::new(&chain, &narrow, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &narrow, |_| 0.0, Reading::Strict).unwrap();
     let found = subject.check(&[claim(70..90, rsc_m)]);
     assert_eq!(found[0].len(), 1);
     assert!(found[0][0].detail.contains("in an area"), "{}", found[0][0].detail);
@@ -122,7 +123,7 @@ fn claims_that_share_steps_are_decided_each_for_itself() {
     let chain = semi();
     let corridor = straight(&[(0..160, vec![strip(2.2)])]);
     let rsc_m = most(&chain, &corridor, 70..90);
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
     let claims = [claim(70..90, rsc_m), claim(75..95, rsc_m + 0.2), claim(60..100, rsc_m - 0.2)];
     assert_eq!(subject.check(&claims).iter().map(Vec::len).collect::<Vec<_>>(), [0, 1, 0]);
 }
@@ -154,7 +155,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     // The steer axle is at station 60. The semi-trailer reaches from 58 m back to 45 m.
     let hole = vec![strip(6.0), square([50.0, 0.1], 0.1)];
     let begins = straight(&[(60..160, hole.clone())]);
-    let subject = Subject::new(&chain, &begins, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &begins, |_| 0.0, Reading::Strict).unwrap();
     let motion = subject.motion.as_ref().unwrap();
     let first = (subject.road.lead + 60) * STEPS;
     let mut swept = SweptVehicle::new(&chain, &subject.road, motion, 0.15);
@@ -164,7 +165,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     assert!((found.at[0].abs() < 6.0 && found.at[1].abs() < 0.5), "{found:?}");
     // The same where one of two areas ends.
     let ends = straight(&[(20..61, vec![strip(6.0)]), (20..160, hole)]);
-    let subject = Subject::new(&chain, &ends, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &ends, |_| 0.0, Reading::Strict).unwrap();
     let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     assert_eq!(swept.cramped(&[(first - 8..first, 0.0)], None), [None]);
     assert_eq!(swept.cramped(&[(first - 8..first + 8, 0.0)], None)[0].unwrap().step, first);
@@ -205,7 +206,7 @@ fn some_millimetres_of_what_is_missing_are_a_remark() {
     let chain = semi();
     let weights = |half: f64, more_m: f64| -> Vec<Weight> {
         let corridor = straight(&[(0..160, vec![strip(half)])]);
-        let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+        let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
         let asked = claim(40..110, most(&chain, &corridor, 40..110) + more_m);
         subject.check(&[asked]).remove(0).into_iter().map(|finding| finding.weight).collect()
     };
@@ -220,7 +221,7 @@ fn columns_claim_nothing_in_areas() {
     let chain = semi();
     // The steer axle is in the area from station 40 to 120. So no corridor step touches what is 60 to 100.
     let corridor = straight(&[(40..121, vec![strip(2.2)])]);
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
     let column = |stations: Range<usize>| -> Vec<Option<f64>> {
         (0..160).map(|k| stations.contains(&k).then_some(9.0)).collect()
     };
@@ -252,7 +253,7 @@ fn malformed_areas_are_refused_with_a_reason() {
     let chain = semi();
     let refused = |heads: Range<usize>, rings: Vec<Vec<Point>>| {
         let corridor = straight(&[(heads, rings)]);
-        Subject::new(&chain, &corridor, |_| 0.0, true).err().map(|error| error.to_string()).unwrap()
+        Subject::new(&chain, &corridor, |_| 0.0, Reading::Lenient).err().map(|error| error.to_string()).unwrap()
     };
     let many: Vec<Point> = (0..=MOST_VERTICES).map(|k| [k as f64, 0.0]).collect();
     #[allow(clippy::reversed_empty_ranges)]
@@ -294,14 +295,14 @@ fn what_is_beyond_the_corridor_when_an_area_ends_is_not_counted() {
     let mut corridor = Corridor::from_curvature(spacing, START, HEADING, &profile.curvature, 3.0, 7.0);
     let last = corridor.len() - 1;
     corridor.areas = vec![AreaSpan { heads: 100..last, area: area(START, HEADING, &[square([30.0, 0.0], 90.0)]) }];
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
     let (motion, end) = (subject.motion.as_ref().unwrap(), (subject.road.lead + last) as f64);
     let mut least = [f64::INFINITY; 2];
     for node in (subject.road.lead + last - 1) * STEPS..motion.steps() {
         for a in (-90..=510).map(|cm| 0.01 * f64::from(cm)) {
             let place = point(motion.pose(node, 0), a, 1.275);
             let guess = node as f64 / STEPS as f64 - (3.7 - a) / spacing;
-            let Some((s, _, lateral)) = subject.foot(place, guess) else { continue };
+            let Some(Foot { s, lateral, .. }) = subject.foot(place, guess) else { continue };
             let beyond = usize::from(s > end);
             least[beyond] = least[beyond].min(3.0 - lateral);
         }

@@ -52,19 +52,19 @@ impl<V: Vector> Gap<'_, V> {
         let gap = self.gap();
         let parts = if bulges(before, sample) { (gap / part_m(before, sample)).ceil().max(1.0) } else { 1.0 };
         if parts == 1.0 && gap > PART_M && sags(before, sample, self.s, gap) {
-            return piecewise::<V, REFINED>(self, (before, sample), minima);
+            return piecewise::<V, REFINED>(self, before, sample, minima);
         }
         if parts > 1.0 {
-            inside::<V, REFINED>(self, (before, sample), parts, minima);
+            inside::<V, REFINED>(self, before, sample, parts, minima);
         } else {
-            at_marks(self.track, (before, sample), self.s, gap, minima);
+            at_marks(self.track, before, sample, self.s, gap, minima);
         }
         between_points(before, sample, self.s, gap, parts);
     }
 
     /// A place of the side, at a share of the gap.
     #[inline(always)]
-    fn inner<const REFINED: bool>(&self, (before, after): (&Sample<V>, &Sample<V>), part: f64) -> Sample<V> {
+    fn inner<const REFINED: bool>(&self, before: &Sample<V>, after: &Sample<V>, part: f64) -> Sample<V> {
         let Self { track, body, index, s, knots } = *self;
         let (ahead, point) = (&body.points[index - 1], &body.points[index]);
         let on_axis = ahead.on_axis.between(point.on_axis, part);
@@ -88,24 +88,24 @@ by_instruction_set! {
     /// Examines the side between a body point and the previous one in `parts` parts, where half-widths bulge.
     fn inside<V, const REFINED: bool>(
         side: &Gap<'_, V>,
-        ends: (&Sample<V>, &Sample<V>),
+        before: &Sample<V>,
+        after: &Sample<V>,
         parts: f64,
         minima: &mut Minima,
     ) {
-        let (before, after) = ends;
         let Gap { track, s, .. } = *side;
         let part_m = side.gap() / parts;
         let mut last: Option<Sample<V>> = None;
         for number in 1..parts as usize {
-            let mut sample = side.inner::<REFINED>((before, after), number as f64 / parts);
+            let mut sample = side.inner::<REFINED>(before, after, number as f64 / parts);
             let [most, least] = bends(&[before, &sample, after], s, part_m);
             sample.lowered_left = sample.left - whole_sagitta(most, part_m);
             sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
             sample.lower(minima);
-            at_marks(track, (last.as_ref().unwrap_or(before), &sample), s, part_m, minima);
+            at_marks(track, last.as_ref().unwrap_or(before), &sample, s, part_m, minima);
             last = Some(sample);
         }
-        at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
+        at_marks(track, last.as_ref().unwrap_or(before), after, s, part_m, minima);
     }
 }
 
@@ -114,26 +114,26 @@ by_instruction_set! {
     /// the sharpest parallel under either of them; where a side is half in a bend, that is much for the whole gap.
     fn piecewise<V, const REFINED: bool>(
         side: &Gap<'_, V>,
-        ends: (&mut Sample<V>, &mut Sample<V>),
+        before: &mut Sample<V>,
+        after: &mut Sample<V>,
         minima: &mut Minima,
     ) {
-        let (before, after) = ends;
         let Gap { track, s, .. } = *side;
         let parts = (side.gap() / PART_M).ceil();
         let part_m = side.gap() / parts;
         let mut last: Option<Sample<V>> = None;
         for number in 1..parts as usize {
-            let mut inner = side.inner::<REFINED>((before, after), number as f64 / parts);
+            let mut inner = side.inner::<REFINED>(before, after, number as f64 / parts);
             let previous = last.as_mut().unwrap_or(before);
             between_points(previous, &mut inner, s, part_m, 1.0);
-            at_marks(track, (previous, &inner), s, part_m, minima);
+            at_marks(track, previous, &inner, s, part_m, minima);
             if let Some(passed) = last.replace(inner) {
                 passed.lower(minima);
             }
         }
         let previous = last.as_mut().unwrap_or(before);
         between_points(previous, after, s, part_m, 1.0);
-        at_marks(track, (previous, after), s, part_m, minima);
+        at_marks(track, previous, after, s, part_m, minima);
         if let Some(passed) = last {
             passed.lower(minima);
         }

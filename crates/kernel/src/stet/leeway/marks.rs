@@ -27,22 +27,29 @@ const NO_STATIONS: f64 = 1e-9;
 #[inline(always)]
 pub(super) fn at_marks<V: Vector>(
     track: &Track,
-    (before, after): (&Sample<V>, &Sample<V>),
+    before: &Sample<V>,
+    after: &Sample<V>,
     s: &States<V>,
     gap: f64,
     minima: &mut Minima,
 ) {
     let [from, to] = [after.feet.range().0, before.feet.range().1];
     if track.marks(from, to).next().is_some() {
-        note_marks(track, (before, after), s, gap, minima);
+        note_marks(track, before, after, s, gap, minima);
     }
 }
 
 by_instruction_set! {
     /// As [`at_marks`], where there are any.
     #[cold]
-    fn note_marks<V>(track: &Track, ends: (&Sample<V>, &Sample<V>), s: &States<V>, gap: f64, minima: &mut Minima) {
-        let (before, after) = ends;
+    fn note_marks<V>(
+        track: &Track,
+        before: &Sample<V>,
+        after: &Sample<V>,
+        s: &States<V>,
+        gap: f64,
+        minima: &mut Minima,
+    ) {
         let bulge = before.bulge.max(after.bulge);
         let [most_bend, least_bend] = bends(&[before, after], s, gap);
         let bend_left = most_bend.max(V::ZERO) * SHARPER_AT_LEAST + bulge;

@@ -30,6 +30,13 @@ const BUNDLE: usize = 8;
 const ROUNDED_M: f64 = 0.1;
 const ROUNDED: f64 = 0.1;
 
+/// A cell of the grid.
+#[derive(Clone, Copy)]
+struct Cell {
+    column: usize,
+    row: usize,
+}
+
 /// A piece of a side over a step.
 pub(super) struct SweptPiece<'a> {
     /// Its ends at both stations.
@@ -197,14 +204,14 @@ impl Ground {
     }
 
     /// The cell of a place. `None` outside the grid, which is outside the area.
-    fn cell(&self, p: Point) -> Option<(usize, usize)> {
+    fn cell(&self, p: Point) -> Option<Cell> {
         let [x, y] = [0, 1].map(|k| (p[k] - self.origin[k]) / CELL_M);
         let on = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
-        on.then_some((x as usize, y as usize))
+        on.then_some(Cell { column: x as usize, row: y as usize })
     }
 
-    fn near(&self, (column, row): (usize, usize)) -> &[Near] {
-        let cell = row * self.columns + column;
+    fn near(&self, cell: Cell) -> &[Near] {
+        let cell = cell.row * self.columns + cell.column;
         &self.near[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
@@ -230,8 +237,8 @@ impl Ground {
     /// there, along the row and then along the column.
     fn contains(&self, p: Point) -> bool {
         let Some(cell) = self.cell(p) else { return false };
-        let corner = self.corner(cell.0, cell.1);
-        let mut inside = self.inside[cell.1 * self.columns + cell.0];
+        let corner = self.corner(cell.column, cell.row);
+        let mut inside = self.inside[cell.row * self.columns + cell.column];
         // The way from the corner does not leave the cell.
         for &Near { segment, .. } in self.near(cell).iter().take_while(|near| near.middle_m <= HALF_CELL_M) {
             let Segment { a, b, .. } = self.segments[segment as usize];

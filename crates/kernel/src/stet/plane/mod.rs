@@ -72,7 +72,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                 let known = (minima.floor + SAME_M).max(minima.keep);
                 let known = [0, 1].map(|side| minima.area[side][before.head].min(known));
                 let lowest = if closes {
-                    let passage = Passage::new(track, (&body.points, body.half_width), &before, &stand);
+                    let passage = Passage::new(track, &body.points, body.half_width, &before, &stand);
                     passage.lowest(&mut body.rooms, known)
                 } else {
                     [Lowest { leeway: FAR_OUTSIDE_M, point: Some(0) }; 2]

@@ -61,7 +61,8 @@ pub(super) struct Passage<'a> {
 impl<'a> Passage<'a> {
     pub(super) fn new(
         track: &'a Track,
-        (points, half_width): (&'a [BodyPoint], f64),
+        points: &'a [BodyPoint],
+        half_width: f64,
         before: &'a Stand,
         after: &'a Stand,
     ) -> Self {

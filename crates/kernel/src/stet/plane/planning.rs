@@ -33,7 +33,7 @@ pub(super) fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize;
                 // Only what is negative or the least is asked for.
                 let enough = if only { minima.floor.max(0.0) } else { f64::INFINITY };
                 number += 1;
-                let room = body.rooms.nominal(&track.areas, stand.head, (number - 1, p), enough);
+                let room = body.rooms.nominal(&track.areas, stand.head, number - 1, p, enough);
                 let Some(room) = room else { continue };
                 let near = if share < 0.5 { before } else { index };
                 let point = &body.points[near];

@@ -73,13 +73,7 @@ impl Rooms {
 
     /// The room of a place without disturbances, unless it is known to be at least `enough`: it falls by no more than the place has moved
     /// since it was measured. Places are numbered.
-    pub(super) fn nominal(
-        &mut self,
-        areas: &Areas,
-        head: usize,
-        (number, p): (usize, Point),
-        enough: f64,
-    ) -> Option<f64> {
+    pub(super) fn nominal(&mut self, areas: &Areas, head: usize, number: usize, p: Point, enough: f64) -> Option<f64> {
         let known = self.places.get(number);
         if known.is_some_and(|(q, room)| room - apart(*q, p) >= enough) {
             return None;

@@ -7,7 +7,7 @@
 use super::class::road_class;
 use super::limits::LegalTags;
 use super::notes::Notes;
-use super::{Direction, Permission, RoadClass, Tags};
+use super::{Direction, Oneway, Permission, RoadClass, Tags};
 
 /// Kind of an area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -49,7 +49,7 @@ pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
         legal.take(key, value, &mut notes);
     }
     let open = |direction| {
-        let legal = legal.resolve(direction, false);
+        let legal = legal.resolve(direction, Oneway::No);
         legal.motor_vehicle == Permission::Yes && legal.hgv == Permission::Yes
     };
     (open(Direction::Forward) && open(Direction::Backward)).then_some(AreaKind::Road(class))

@@ -7,7 +7,7 @@
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::section_reader::SectionReader;
+use crate::osm::facts::section_reader::{SectionReader, Sharing};
 use crate::osm::facts::speed::SpeedTags;
 use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, told};
 use crate::words::Named as _;
@@ -96,9 +96,10 @@ impl<'t> Basics<'t> {
         }
     }
 
-    /// Whether a road is one-way without a tag.
-    fn implied_oneway(&self, class: RoadClass, link: bool) -> bool {
-        self.roundabout || (class == RoadClass::Motorway && !link)
+    /// The directions of a road that has no tag about them.
+    fn untagged_oneway(&self, class: RoadClass, link: bool) -> Oneway {
+        let implied = self.roundabout || (class == RoadClass::Motorway && !link);
+        if implied { Oneway::Forward } else { Oneway::No }
     }
 }
 
@@ -111,10 +112,10 @@ fn directions(tag: OnewayTag) -> Oneway {
 }
 
 /// The directions for which the carriageway is laid out: those of general traffic. If lorries have others, both share the road.
-fn traffic(basics: &Basics<'_>, legal: &LegalTags<'_>, implied: bool, general: Oneway) -> Oneway {
+fn traffic(basics: &Basics<'_>, legal: &LegalTags<'_>, untagged: Oneway, general: Oneway) -> Oneway {
     let [vehicle, motor_vehicle] = basics.oneway_motor;
     let general = motor_vehicle.or(vehicle).map_or(general, directions);
-    let lorries = legal.oneway(implied, |class| class.keys.iter().any(|key| key == "hgv")).unwrap_or(general);
+    let lorries = legal.oneway(untagged, |class| class.keys.iter().any(|key| key == "hgv")).unwrap_or(general);
     if lorries == general { general } else { Oneway::No }
 }
 
@@ -175,21 +176,24 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         legal.access.imply_no_motor_vehicles();
     }
 
-    let implied = basics.implied_oneway(class, link);
-    let oneway_tag = basics.oneway.unwrap_or(if implied { OnewayTag::Forward } else { OnewayTag::No });
-    let general = directions(oneway_tag);
-    let oneway = legal.oneway(implied, |_| true).unwrap_or(general);
-    let traffic = traffic(&basics, &legal, implied, general);
+    let untagged = basics.untagged_oneway(class, link);
+    let general = basics.oneway.map_or(untagged, directions);
+    let oneway = legal.oneway(untagged, |_| true).unwrap_or(general);
+    let traffic = traffic(&basics, &legal, untagged, general);
     legal.note_rules(&mut notes);
-    let mut legals = [Direction::Forward, Direction::Backward].map(|direction| legal.resolve(direction, implied));
-    if oneway_tag == OnewayTag::Reversible {
+    let mut legals = [Direction::Forward, Direction::Backward].map(|direction| legal.resolve(direction, untagged));
+    let sharing = match basics.oneway {
+        Some(OnewayTag::Reversible) => Sharing::Reversible,
+        Some(OnewayTag::Alternating) => Sharing::Alternating,
+        _ => Sharing::Never,
+    };
+    if sharing == Sharing::Reversible {
         notes.add(Note::Reversible);
         for legal in &mut legals {
             legal.hgv = legal.hgv.max(Permission::Restricted);
         }
     }
-    let section =
-        section.finish(traffic, oneway_tag == OnewayTag::Reversible, oneway_tag == OnewayTag::Alternating, &mut notes);
+    let section = section.finish(traffic, sharing, &mut notes);
     let [legal_forward, legal_backward] = legals;
     Ok(WayDraft {
         facts: WayFacts {

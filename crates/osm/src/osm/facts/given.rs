@@ -4,7 +4,7 @@ use std::num::NonZeroU8;
 
 use super::class::road_class;
 use super::notes::Notes;
-use super::section_reader::SectionReader;
+use super::section_reader::{SectionReader, Sharing};
 use super::{Legal, Oneway, RoadClass, WayFacts};
 
 /// What such a source says of a road.
@@ -53,7 +53,7 @@ impl GivenRoad {
             legal_backward,
             max_speed_km_h: self.max_speed_km_h,
             width_tags: None,
-            section: section.finish(self.traffic, false, false, notes),
+            section: section.finish(self.traffic, Sharing::Never, notes),
         }
     }
 }

@@ -6,7 +6,7 @@
 use crate::osm::facts::Direction;
 use crate::osm::facts::layout::{Layout, SHARED, Segment, Use};
 use crate::osm::facts::section::{LISTED, LaneTags, Mark, in_metres};
-use crate::osm::facts::widths::{Builder, LANE_M, SHARED_BELOW_M};
+use crate::osm::facts::widths::{Builder, LANE_M, SHARED_BELOW_M, Traffic};
 
 impl Builder<'_> {
     /// The layout of a one-way road. Lanes of oncoming buses lie beyond its own.
@@ -43,7 +43,7 @@ impl Builder<'_> {
         } else {
             self.single_m.filter(|_| lanes.len() == 1).map(|width_m| width_m.max(self.lane_m))
         };
-        self.lay_out(lanes, known, assumed_m, false)
+        self.lay_out(lanes, known, assumed_m, Traffic::OneWay)
     }
 
     /// The layout of a two-way road.
@@ -62,7 +62,7 @@ impl Builder<'_> {
             };
             // A wide road is not shared merely because a tag is missing: each direction gets a half.
             if single || self.tags.carriageway.is_none_or(|width| width.metres() < SHARED_BELOW_M) {
-                return self.lay_out(vec![self.shared(&[forward, backward])], known, Some(assumed_m), true);
+                return self.lay_out(vec![self.shared(&[forward, backward])], known, Some(assumed_m), Traffic::TwoWay);
             }
         }
         let (n_forward, n_backward, n_centre) = self.lane_counts();
@@ -86,7 +86,7 @@ impl Builder<'_> {
             backward.append(&mut forward);
             backward
         };
-        self.lay_out(lanes, known, None, true)
+        self.lay_out(lanes, known, None, Traffic::TwoWay)
     }
 
     /// The lane that both directions share. It is no wider than any width that a list gives.

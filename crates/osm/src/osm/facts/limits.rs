@@ -141,7 +141,7 @@ impl<'t> LegalTags<'t> {
     /// Takes a tag if its key concerns limits, access or the direction of travel.
     pub(super) fn take(&mut self, key: &'t str, text: &'t str, notes: &mut Notes) {
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
-        self.rules.take(key, (head, suffix), text);
+        self.rules.take(key, head, suffix, text);
         let conditional = suffix == "conditional" || suffix.ends_with(":conditional");
         let plain =
             if conditional { suffix.strip_suffix("conditional").unwrap_or("").trim_end_matches(':') } else { suffix };
@@ -215,12 +215,12 @@ impl<'t> LegalTags<'t> {
         }
     }
 
-    /// The limits and access of a direction. `implied_oneway`: the road is one-way without a tag.
-    pub(super) fn resolve(&self, direction: Direction, implied_oneway: bool) -> Legal {
+    /// The limits and access of a direction. `untagged`: the directions that the road has without a tag about them.
+    pub(super) fn resolve(&self, direction: Direction, untagged: Oneway) -> Legal {
         let index = usize::from(direction == Direction::Backward);
         let (motor_vehicle, hgv) = self.access.resolve(direction);
         let mut legal = Legal { hgv, motor_vehicle, ..self.limits[index].clone() };
-        self.rules.add_to(&mut legal, direction, implied_oneway);
+        self.rules.add_to(&mut legal, direction, untagged);
         if legal.rules.is_none() {
             legal.tags = self.rules.told(direction);
         }
@@ -228,8 +228,8 @@ impl<'t> LegalTags<'t> {
     }
 
     /// The directions of travel that exist for some vehicle of `those` classes, if tags give them by vehicle or time.
-    pub(super) fn oneway(&self, implied: bool, those: impl Fn(&crate::vehicle::Class) -> bool) -> Option<Oneway> {
-        self.rules.oneway(implied, those)
+    pub(super) fn oneway(&self, untagged: Oneway, those: impl Fn(&crate::vehicle::Class) -> bool) -> Option<Oneway> {
+        self.rules.oneway(untagged, those)
     }
 
     /// Adds remarks on rules.

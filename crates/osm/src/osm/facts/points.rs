@@ -2,7 +2,7 @@
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Direction, Limit, PointFacts, Tags, told, value};
+use crate::osm::facts::{Direction, Limit, Oneway, PointFacts, Tags, told, value};
 
 /// Passable width of a choker or chicane without a tagged width, metres: one lane of a minor main road. Assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
@@ -90,9 +90,9 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
             rules.take("motor_vehicle:conditional", value, &mut notes);
         }
     }
-    let mut legal = rules.resolve(Direction::Forward, false);
+    let mut legal = rules.resolve(Direction::Forward, Oneway::No);
     if tags.iter().any(|(key, _)| key.ends_with("ward") || key.contains("ward:")) {
-        legal = legal.merge(&rules.resolve(Direction::Backward, false));
+        legal = legal.merge(&rules.resolve(Direction::Backward, Oneway::No));
     }
     if barrier == Some(Barrier::Height) && legal.max_height == Limit::None {
         legal.max_height = Limit::Unreadable;

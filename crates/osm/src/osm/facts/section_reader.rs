@@ -13,6 +13,16 @@ use crate::osm::facts::{Direction, Oneway, WidthSource, value};
 /// Greatest width of a carriageway, metres. A greater value is a typing error.
 const WIDEST_M: f32 = 40.0;
 
+/// Whether both directions use the carriageway by turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sharing {
+    Never,
+    /// As `oneway=reversible` says: one direction at a time, for hours.
+    Reversible,
+    /// As `oneway=alternating` says: one direction at a time, for minutes.
+    Alternating,
+}
+
 /// Collects the tags of the cross section, in any order.
 #[derive(Debug, Default)]
 pub(super) struct SectionReader {
@@ -170,7 +180,7 @@ impl SectionReader {
     }
 
     /// Combines the tags, once the directions are known for which the carriageway is laid out.
-    pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
+    pub(super) fn finish(self, oneway: Oneway, sharing: Sharing, notes: &mut Notes) -> SectionTags {
         let mut lists = self.lists;
         let both_ways = self.both_ways.max(self.middle.lanes()).max(self.middle.turns);
         // More lanes are a typing error in one of the tags, so none is used.
@@ -183,7 +193,7 @@ impl SectionReader {
             count_turns(&mut lists, both_ways, oneway);
         }
         let (directions, whole_road) = match oneway {
-            Oneway::No if reversible => (by_turns(&lists), false),
+            Oneway::No if sharing == Sharing::Reversible => (by_turns(&lists), false),
             Oneway::No => two_way(&mut lists, both_ways),
             Oneway::Forward => {
                 let (own, other, whole_road) = self.one_way(&lists, 1);
@@ -215,8 +225,8 @@ impl SectionReader {
             marks: Marks::of(&[
                 (Mark::Unreadable, self.unreadable && carriageway.is_none()),
                 (Mark::Narrow, self.narrow),
-                (Mark::Reversible, reversible),
-                (Mark::Alternating, alternating),
+                (Mark::Reversible, sharing == Sharing::Reversible),
+                (Mark::Alternating, sharing == Sharing::Alternating),
                 (Mark::WholeRoad, whole_road),
                 (Mark::Along, oneway == Oneway::Forward),
                 (Mark::Against, oneway == Oneway::Backward),

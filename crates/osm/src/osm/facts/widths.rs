@@ -66,6 +66,20 @@ fn untagged_lane_m(facts: &WayFacts, jurisdiction: &Jurisdiction, rules: &Rules)
     if narrow { lane_m.min(rules.kerb.narrow_m) } else { lane_m }
 }
 
+/// Whether the lanes that are laid out are those of one direction or of both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Traffic {
+    OneWay,
+    TwoWay,
+}
+
+/// Whether shoulders are taken off a carriageway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shoulders {
+    Within,
+    LeftOut,
+}
+
 /// Lays out a way's cross section. `lanes` determines the lanes.
 pub(super) struct Builder<'a> {
     pub(super) tags: &'a SectionTags,
@@ -85,7 +99,7 @@ impl Builder<'_> {
         mut lanes: Vec<Segment>,
         known: bool,
         assumed_m: Option<f32>,
-        two_way: bool,
+        traffic: Traffic,
     ) -> Layout {
         let tagged = self.available(&lanes);
         if let Some(room) = &tagged
@@ -106,7 +120,7 @@ impl Builder<'_> {
             if room.width_m <= 0.0 {
                 return Layout::default();
             }
-            if let Some(layout) = self.share_out(&lanes, &room, known, two_way) {
+            if let Some(layout) = self.share_out(&lanes, &room, known, traffic) {
                 return self.limited(layout);
             }
         }
@@ -122,18 +136,19 @@ impl Builder<'_> {
     }
 
     /// Shares a tagged width out among the lanes. `None` if the lanes would be too wide to be the tagged ones.
-    fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, two_way: bool) -> Option<Layout> {
+    fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, traffic: Traffic) -> Option<Layout> {
         let left_m = room.width_m - given_m(lanes);
         let each_m = left_m / unknown(lanes);
         let shared_already = lanes.iter().any(|lane| lane.used == Use::Shared);
         if (known || shared_already) && each_m > *LANE_M.end() {
             return None;
         }
-        let narrow = each_m < *LANE_M.start() || (two_way && !known && room.width_m < SHARED_BELOW_M);
+        let narrow =
+            each_m < *LANE_M.start() || (traffic == Traffic::TwoWay && !known && room.width_m < SHARED_BELOW_M);
         // Lanes of known width stay; the others have what is left, however little.
         let listed = lanes.iter().any(|lane| lane.listed);
         if narrow && !shared_already && !listed {
-            return Some(self.one_for_all(lanes, left_m, room, known, two_way));
+            return Some(self.one_for_all(lanes, left_m, room, known, traffic));
         }
         let each_m = each_m.max(0.0);
         let mut out = Vec::with_capacity(lanes.len() + 2);
@@ -157,7 +172,7 @@ impl Builder<'_> {
 
     /// A road too narrow for its lanes gets one lane, by turns for both directions of a two-way road. If lanes are
     /// tagged, one of the two tags is wrong. It may be the width, so the lane is no wider than an assumed one.
-    fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, two_way: bool) -> Layout {
+    fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, traffic: Traffic) -> Layout {
         let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
         let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
         let most_m = lanes.iter().filter_map(|lane| lane.most_m).reduce(f32::min);
@@ -165,7 +180,7 @@ impl Builder<'_> {
         if width_m <= 0.0 {
             return Layout::default();
         }
-        let one = Segment { width_m: Some(width_m), ..if two_way { SHARED } else { *open } };
+        let one = Segment { width_m: Some(width_m), ..if traffic == Traffic::TwoWay { SHARED } else { *open } };
         let source = if width_m < left_m { room.source.min(WidthSource::FromLanes) } else { room.source };
         let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
         let whole = Room { source, ..*room };
@@ -180,19 +195,19 @@ impl Builder<'_> {
         let kerbs = &self.tags.kerbs;
         let assumed = kerbs.iter().any(|k| [k.parking_dm, k.cycle_dm, k.shoulder_dm].contains(&UNTAGGED));
         let source = if assumed { self.tags.source.min(WidthSource::Estimated) } else { self.tags.source };
-        let within = Room { width_m: carriageway_m - taken_m(true), source, shoulders: true };
+        let within = Room { width_m: carriageway_m - taken_m(Shoulders::Within), source, shoulders: Shoulders::Within };
         let lanes_m = unknown(lanes) * self.lane_m + given_m(lanes);
         if within.width_m >= lanes_m || kerbs.iter().all(|kerb| kerb.shoulder_dm == 0) {
             return Some(within);
         }
         // Many mappers leave shoulders out of the width (motorways with width=7.5, lanes=2, shoulder=yes). If not even
         // the assumed lanes fit beside the shoulders, the lanes are as assumed, but no wider than the tag.
-        let without_m = (carriageway_m - taken_m(false)).min(lanes_m);
-        Some(Room { width_m: without_m, source: source.min(WidthSource::FromLanes), shoulders: false })
+        let without_m = (carriageway_m - taken_m(Shoulders::LeftOut)).min(lanes_m);
+        Some(Room { width_m: without_m, source: source.min(WidthSource::FromLanes), shoulders: Shoulders::LeftOut })
     }
 
     /// The parts beside the lanes on one side (0: left of the node order), from the edge inwards.
-    fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: bool) -> Vec<Segment> {
+    fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: Shoulders) -> Vec<Segment> {
         let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
         let rule = &self.kerb_rule;
         let parking_m = match parking {
@@ -207,7 +222,7 @@ impl Builder<'_> {
         for (dm, default_m, used) in [
             (parking_dm, parking_m, Use::Aside),
             (if listed { 0 } else { cycle_dm }, rule.cycle_lane_m, Use::Aside),
-            (if shoulders { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
+            (if shoulders == Shoulders::Within { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
         ] {
             if dm > 0 {
                 inwards.push(Segment { width_m: Some(metres(dm, default_m)), ..Segment::new(None, used) });
@@ -279,7 +294,7 @@ impl Builder<'_> {
 struct Room {
     width_m: f32,
     source: WidthSource,
-    shoulders: bool,
+    shoulders: Shoulders,
 }
 
 fn given_m(segments: &[Segment]) -> f32 {

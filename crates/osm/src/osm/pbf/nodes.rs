@@ -153,7 +153,7 @@ where
 {
     /// Counts a node, whose tags are in `self.tags`, and takes what is kept of it.
     #[inline]
-    fn node(&mut self, id: i64, visible: bool, (lat, lon): (i64, i64)) {
+    fn node(&mut self, id: i64, visible: bool, lat: i64, lon: i64) {
         if self.changed.has(Kind::Node, id) {
             return;
         }
@@ -203,7 +203,7 @@ where
             self.tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
         }
         let visible = node.info.as_ref().is_none_or(|info| info.visible.unwrap_or(true));
-        self.node(node.id(), visible, (node.lat(), node.lon()));
+        self.node(node.id(), visible, node.lat(), node.lon());
         Ok(())
     }
 
@@ -222,7 +222,7 @@ where
                 self.dense_tags(&mut keys_values, object)?;
             }
             let visible = !known_visible || visibles.varint()? != 0;
-            self.node(id, visible, (lat, lon));
+            self.node(id, visible, lat, lon);
         }
         let object = ObjectId::DenseNodes;
         if !(ids.is_empty() && lats.is_empty() && lons.is_empty()) {

@@ -112,7 +112,7 @@ impl<'a> Planner<'a> {
             let first_m = best.first().map_or(f64::NEG_INFINITY, |first| first.score_m);
             let last_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
             let floor_m = last_m.max(first_m.min(least_m));
-            let Some(score) = scorer.score(&mut self.field, code, (COARSE_M, floor_m)) else { continue };
+            let Some(score) = scorer.score(&mut self.field, code, COARSE_M, floor_m) else { continue };
             let place = best.partition_point(|known| known.score_m >= score.score_m);
             best.insert(place, Planned::new(code, score));
             best.truncate(count);
@@ -120,7 +120,7 @@ impl<'a> Planner<'a> {
         let others = best.partition_point(|known| known.score_m >= least_m).max(1);
         best.truncate(others);
         for planned in &mut best {
-            if let Some(fine) = scorer.score(&mut self.field, planned.code, (FINE_M, f64::NEG_INFINITY)) {
+            if let Some(fine) = scorer.score(&mut self.field, planned.code, FINE_M, f64::NEG_INFINITY) {
                 *planned = Planned::new(planned.code, fine);
             }
         }
@@ -140,7 +140,7 @@ impl<'a> Planner<'a> {
                 *to += step * sign;
             }
             let other = other.clamped();
-            let better = || scorer.score(&mut self.field, other.encode(), (FINE_M, planned.score_m));
+            let better = || scorer.score(&mut self.field, other.encode(), FINE_M, planned.score_m);
             if let Some(score) = (other != at).then(better).flatten() {
                 // What helped once is tried again, but not the way back.
                 (at, failed) = (other, 1);

@@ -78,7 +78,7 @@ impl<'a> Scorer<'a> {
 
     /// The score of the path with a code, from moments about `step_m` apart. `None` if it is not above `floor_m`, or if the turn has no such
     /// path.
-    pub(super) fn score(&mut self, field: &mut Field, code: i64, (step_m, floor_m): (f64, f64)) -> Option<Score> {
+    pub(super) fn score(&mut self, field: &mut Field, code: i64, step_m: f64, floor_m: f64) -> Option<Score> {
         let line = self.made.line(code, step_m)?;
         let (units, to) = (&self.vehicle.units, self.made.arms()[1]);
         let [leave, join] = line.joints;
@@ -171,7 +171,7 @@ impl<'a> Scorer<'a> {
             let units = self.at(moment).zip(sides.chunks_exact_mut(2));
             for ((tube_m, axle, heading, unit), sides) in units {
                 for (side, corner) in sides.iter_mut().zip(rear_corners(axle, heading, unit)) {
-                    let room_m = side.go_on(field, (corner, heading), length_m(unit), least.0 + tube_m) - tube_m;
+                    let room_m = side.go_on(field, corner, heading, length_m(unit), least.0 + tube_m) - tube_m;
                     if room_m < least.0 {
                         least = (room_m, moment);
                     }
@@ -239,7 +239,7 @@ fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
 /// the place does, so a place with much room speaks for its neighbours.
 fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut least_m: f64) -> f64 {
     for corner in rear_corners(axle, heading, unit) {
-        least_m = room_along(field, (corner, heading), [0.0, length_m(unit)], SIDE_STEP_M, least_m);
+        least_m = room_along(field, corner, heading, [0.0, length_m(unit)], SIDE_STEP_M, least_m);
     }
     least_m
 }
@@ -254,7 +254,8 @@ fn rear_corners(axle: [f64; 2], heading: [f64; 2], unit: &Unit) -> [[f64; 2]; 2]
 /// `step_m` apart.
 fn room_along(
     field: &mut Field,
-    (start, heading): ([f64; 2], [f64; 2]),
+    start: [f64; 2],
+    heading: [f64; 2],
     [mut s, end]: [f64; 2],
     step_m: f64,
     mut least_m: f64,
@@ -288,7 +289,7 @@ impl Default for Side {
 
 impl Side {
     /// Takes the side to its next place, given by its rear end and heading. Returns its room, where it is below `least_m`.
-    fn go_on(&mut self, field: &mut Field, (rear, heading): ([f64; 2], [f64; 2]), length_m: f64, least_m: f64) -> f64 {
+    fn go_on(&mut self, field: &mut Field, rear: [f64; 2], heading: [f64; 2], length_m: f64, least_m: f64) -> f64 {
         let front = along(rear, heading, length_m);
         let from_rear = |p: [f64; 2]| {
             let [x, y] = [p[0] - self.rear[0], p[1] - self.rear[1]];
@@ -301,9 +302,9 @@ impl Side {
         // Places behind this one have been looked at, and lie no farther aside than the ends.
         let room_m = if on {
             let new = [(length_m + length_m - front_m).clamp(0.0, length_m), length_m];
-            room_along(field, (rear, heading), new, FRONT_STEP_M, known_m)
+            room_along(field, rear, heading, new, FRONT_STEP_M, known_m)
         } else {
-            room_along(field, (rear, heading), [0.0, length_m], SIDE_STEP_M, least_m + SLACK_M)
+            room_along(field, rear, heading, [0.0, length_m], SIDE_STEP_M, least_m + SLACK_M)
         };
         *self = Self { rear, heading, room_m };
         room_m
@@ -348,7 +349,7 @@ mod tests {
             let (mut rear, mut angle) = ([-16.0, -aside_m], 0.0_f64);
             for _ in 0..18 {
                 let heading = [angle.cos(), angle.sin()];
-                found_m = found_m.min(side.go_on(&mut field, (rear, heading), 8.0, found_m));
+                found_m = found_m.min(side.go_on(&mut field, rear, heading, 8.0, found_m));
                 whole_m = room_along(&mut field, (rear, heading), [0.0, 8.0], SIDE_STEP_M, whole_m);
                 for i in 0..=400 {
                     truth_m = truth_m.min(field.distance_m(along(rear, heading, 0.02 * f64::from(i))));

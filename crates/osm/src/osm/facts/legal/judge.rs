@@ -79,17 +79,33 @@ pub(crate) fn closed_to(group: &Group, subject: &Subject<'_>) -> bool {
     all.all(|outcome| outcome.permission == Permission::No && outcome.cause == Cause::Certain)
 }
 
+/// Whether `designated` and the keys of buses lift a condition that closes the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Closure {
+    Liftable,
+    Lasting,
+}
+
+/// What the rules of a key can do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Force {
+    /// They decide.
+    Decides,
+    /// They close, and open nothing.
+    ClosesOnly,
+}
+
 /// Conditions that close the road, whatever more specific keys say.
 #[derive(Default)]
-struct Closures(Vec<(Outcome, bool)>);
+struct Closures(Vec<(Outcome, Closure)>);
 
 impl Closures {
-    fn add(&mut self, outcomes: &Outcomes, liftable: bool) {
-        self.0.extend(outcomes.get(Permission::No).map(|outcome| (outcome, liftable)));
+    fn add(&mut self, outcomes: &Outcomes, closure: Closure) {
+        self.0.extend(outcomes.get(Permission::No).map(|outcome| (outcome, closure)));
     }
 
     fn lift(&mut self) {
-        self.0.retain(|(_, liftable)| !liftable);
+        self.0.retain(|(_, closure)| *closure == Closure::Lasting);
     }
 }
 
@@ -105,21 +121,22 @@ fn outcomes(group: &Group, subject: &Subject<'_>, chain: Chain) -> Outcomes {
     let everybody = (chain == Chain::Oneway).then_some("").into_iter().chain(EVERYBODY);
     let levels = everybody.chain(subject.class.keys.iter().map(String::as_str));
     for key in levels {
-        let closes_only = !key.is_empty() && subject.class.member(key) == Member::Maybe;
+        let maybe = !key.is_empty() && subject.class.member(key) == Member::Maybe;
+        let force = if maybe { Force::ClosesOnly } else { Force::Decides };
         for directed in [false, true] {
             let level: Vec<(usize, &Rule)> = keys
                 .iter()
                 .filter(|(_, rule, own)| *own == key && rule.directed == directed && rule.scope.is_empty())
                 .map(|(i, rule, _)| (*i, *rule))
                 .collect();
-            step(&level, subject, (group.side, key, closes_only), &mut outcomes, &mut closures);
+            step(&level, subject, group.side, key, force, &mut outcomes, &mut closures);
         }
     }
     // `hgv:trailer`: whatever the keys by themselves say.
     for (i, rule, key) in &keys {
         let concerns = key.is_empty() || subject.class.member(key) != Member::No;
         if !rule.scope.is_empty() && concerns && rule.concerns(subject.class) {
-            step(&[(*i, *rule)], subject, (group.side, key, true), &mut outcomes, &mut closures);
+            step(&[(*i, *rule)], subject, group.side, key, Force::ClosesOnly, &mut outcomes, &mut closures);
         }
     }
     for (outcome, _) in closures.0 {
@@ -135,17 +152,19 @@ fn outcomes(group: &Group, subject: &Subject<'_>, chain: Chain) -> Outcomes {
 fn step(
     level: &[(usize, &Rule)],
     subject: &Subject<'_>,
-    (side, key, closes_only): (Direction, &str, bool),
+    side: Direction,
+    key: &str,
+    force: Force,
     outcomes: &mut Outcomes,
     closures: &mut Closures,
 ) {
     let plain = level.iter().filter_map(|&(i, rule)| match &rule.says {
-        Says::Plain(value) => Some((plain_outcome(rule, value, (side, i), subject), value.as_str())),
+        Says::Plain(value) => Some((plain_outcome(rule, value, side, i, subject), value.as_str())),
         Says::Conditional(_) => None,
     });
     let strictest = plain.max_by_key(|(outcome, _)| (outcome.permission, outcome.cause));
     if let Some((outcome, value)) = strictest {
-        if closes_only {
+        if force == Force::ClosesOnly {
             let mut both = outcomes.restricted(outcome);
             if outcome.cause > Cause::Certain {
                 both.add_all(outcomes);
@@ -162,13 +181,13 @@ fn step(
             }
         }
         if outcome.cause == Cause::Time {
-            closures.add(outcomes, false);
+            closures.add(outcomes, Closure::Lasting);
         }
     }
     for &(i, rule) in level {
         if let Says::Conditional(clauses) = &rule.says {
-            let (new, covered) = conditional(rule, clauses, (side, i), subject);
-            if closes_only {
+            let (new, covered) = conditional(rule, clauses, side, i, subject);
+            if force == Force::ClosesOnly {
                 let mut all = if covered { Outcomes::NONE } else { *outcomes };
                 new.iter().for_each(|outcome| all.add_all(&outcomes.restricted(outcome)));
                 *outcomes = all;
@@ -181,12 +200,12 @@ fn step(
                 }
                 *outcomes = all;
             }
-            closures.add(&new, key != "access");
+            closures.add(&new, if key == "access" { Closure::Lasting } else { Closure::Liftable });
         }
     }
 }
 
-fn plain_outcome(rule: &Rule, value: &str, (side, i): (Direction, usize), subject: &Subject<'_>) -> Outcome {
+fn plain_outcome(rule: &Rule, value: &str, side: Direction, i: usize, subject: &Subject<'_>) -> Outcome {
     let (permission, cause) = meaning(rule, value, side, subject);
     Outcome { permission, cause, rule: Some(i) }
 }
@@ -205,12 +224,7 @@ fn meaning(rule: &Rule, value: &str, side: Direction, subject: &Subject<'_>) -> 
 }
 
 /// The outcomes of clauses, the last one first, and whether one of them always holds.
-fn conditional(
-    rule: &Rule,
-    clauses: &[Clause],
-    (side, i): (Direction, usize),
-    subject: &Subject<'_>,
-) -> (Outcomes, bool) {
+fn conditional(rule: &Rule, clauses: &[Clause], side: Direction, i: usize, subject: &Subject<'_>) -> (Outcomes, bool) {
     let mut new = Outcomes::NONE;
     for clause in clauses.iter().rev() {
         let (truth, purpose) = clause.condition.truth(subject);

@@ -64,7 +64,7 @@ impl Legal {
             (*key, *value, property, limit) == ("barrier", "height_restrictor", Property::Height, Limit::Unreadable)
         };
         let tags = || told::tags(self.tags.as_deref());
-        tags().find(says).or_else(|| tags().find(restrictor)).map(joined)
+        tags().find(says).or_else(|| tags().find(restrictor)).map(|(key, value)| joined(key, value))
     }
 
     /// The tag behind the permission of lorries, or of all motor vehicles, as `key=value`. `None` if it is not known.
@@ -76,24 +76,28 @@ impl Legal {
             };
             told::tags(self.tags.as_deref()).find(of)
         };
-        keys.iter().find_map(|key| says(key)).map(joined)
+        keys.iter().find_map(|key| says(key)).map(|(key, value)| joined(key, value))
     }
 
     /// The tags that say how wide narrow places are, as `key=value`.
     #[must_use]
     pub fn passage_tags(&self) -> Vec<String> {
-        told::tags(self.tags.as_deref()).filter(|(key, _)| PASSAGE_KEYS.contains(key)).map(joined).collect()
+        told::tags(self.tags.as_deref())
+            .filter(|(key, _)| PASSAGE_KEYS.contains(key))
+            .map(|(key, value)| joined(key, value))
+            .collect()
     }
 
     /// The tags of barriers, as `key=value` with commas between them. `None` if they are not known.
     #[must_use]
     pub fn barrier_tag(&self) -> Option<String> {
         let of = |(key, _): &(&str, &str)| matches!(*key, "barrier" | "locked");
-        let tags: Vec<String> = told::tags(self.tags.as_deref()).filter(of).map(joined).collect();
+        let tags: Vec<String> =
+            told::tags(self.tags.as_deref()).filter(of).map(|(key, value)| joined(key, value)).collect();
         (!tags.is_empty()).then(|| tags.join(", "))
     }
 }
 
-fn joined((key, value): (&str, &str)) -> String {
+fn joined(key: &str, value: &str) -> String {
     format!("{key}={value}")
 }

@@ -38,7 +38,7 @@ fn is_simple(head: &str, suffix: &str, value: &str) -> bool {
 
 impl<'t> RuleTags<'t> {
     /// Takes a tag, its key split at the first colon, too.
-    pub(in crate::osm::facts) fn take(&mut self, key: &'t str, (head, suffix): (&str, &str), value: &'t str) {
+    pub(in crate::osm::facts) fn take(&mut self, key: &'t str, head: &str, suffix: &str, value: &'t str) {
         if !may_be_rule(head) {
             return;
         }
@@ -95,21 +95,21 @@ impl<'t> RuleTags<'t> {
         })
     }
 
-    fn group(&self, side: Direction, implied_oneway: bool) -> Group {
+    fn group(&self, side: Direction, untagged: Oneway) -> Group {
         let oneway = self.has_oneway_rules();
         let is_oneway = |key: &str| key.split(':').any(|part| part == "oneway");
         // A motorway is one-way without a tag.
-        let implied = oneway && implied_oneway && !self.tags.iter().any(|(key, _)| *key == "oneway");
+        let implied = oneway && untagged != Oneway::No && !self.tags.iter().any(|(key, _)| *key == "oneway");
         let tags = self.tags.iter().copied().filter(|(key, _)| oneway || !is_oneway(key));
         Group::new(tags.chain(implied.then_some(("oneway", "yes"))), side)
     }
 
     /// Adds the rules of a direction to its plain limits and access.
-    pub(in crate::osm::facts) fn add_to(&self, legal: &mut Legal, side: Direction, implied_oneway: bool) {
+    pub(in crate::osm::facts) fn add_to(&self, legal: &mut Legal, side: Direction, untagged: Oneway) {
         if !self.are_needed() {
             return;
         }
-        let group = self.group(side, implied_oneway);
+        let group = self.group(side, untagged);
         for rule in &group.rules {
             show_limit(rule, legal);
         }
@@ -122,7 +122,7 @@ impl<'t> RuleTags<'t> {
             return;
         }
         for side in [Direction::Forward, Direction::Backward] {
-            for rule in self.group(side, false).rules {
+            for rule in self.group(side, Oneway::No).rules {
                 if rule.is_strange() {
                     notes.add(if matches!(rule.about, About::Oneway(_)) {
                         Note::BadOneway
@@ -142,12 +142,12 @@ impl<'t> RuleTags<'t> {
 
     /// The directions of travel that exist for some vehicle of `those` classes at some time, if rules of one-way traffic depend on vehicle
     /// or time. `None`: they do not.
-    pub(in crate::osm::facts) fn oneway(&self, implied: bool, those: impl Fn(&Class) -> bool) -> Option<Oneway> {
+    pub(in crate::osm::facts) fn oneway(&self, untagged: Oneway, those: impl Fn(&Class) -> bool) -> Option<Oneway> {
         if !self.has_oneway_rules() {
             return None;
         }
         let closed = [Direction::Forward, Direction::Backward].map(|side| {
-            let group = self.group(side, implied);
+            let group = self.group(side, untagged);
             let all = Classes::builtin().all();
             all.iter()
                 .filter(|class| those(class))
