@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use netcert_base::corridor::Corridor;
 
+use super::areas::Grounds;
 use super::model::Model;
-use super::plane::Grounds;
 use super::reach::VehicleReach;
 use super::spans;
 use super::track::Track;

@@ -4,6 +4,7 @@
 //! and no threads.
 
 mod adjoint;
+mod areas;
 mod ascent;
 mod block;
 mod body;
@@ -48,13 +49,13 @@ pub use netcert_base::corrections::Options;
 pub use netcert_base::corridor::Side;
 pub use netcert_base::leeway::known_m;
 
+pub use areas::Grounds;
 pub use cases::{Case, certify_cases};
 pub use course::Course;
 pub use external_plan::{PlanError, certify_plan};
 pub use fading::fading_m;
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
-pub use plane::Grounds;
 pub use results::{Certificate, Limiting, Planned, SpanResult};
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};

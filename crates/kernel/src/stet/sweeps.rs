@@ -7,11 +7,11 @@ use netcert_base::corrections::Options;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
+use super::areas::Grounds;
 use super::block::{BLOCK, Minima};
 use super::marked::{Marks, marked};
 use super::model::Model;
 use super::plan::{self, Unplanned};
-use super::plane::Grounds;
 use super::results::{Certificate, SpanResult};
 use super::ride::{Refining, Ride, SweepScope};
 use super::shift::Plan;

@@ -4,9 +4,9 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
+use super::areas::{Areas, Grounds};
 use super::lanes::{LANES, Vector};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
-use super::plane::{Areas, Grounds};
 use netcert_base::corridor::Corridor;
 
 /// Half-width of the straight extensions beyond a body gap from the corridor: they are driven, not certified.

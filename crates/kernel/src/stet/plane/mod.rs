@@ -4,25 +4,16 @@
 //! At the foot of its axle a unit deviates across its heading and in its heading, and not along. The leeway of a piece of its side is
 //! the distance of the piece from a segment of the boundary, less what the piece may move in the direction of that segment.
 
-mod areas;
-mod ground;
 mod passage;
 mod planning;
-mod rooms;
-mod stand;
 
+use super::areas::{FAR_OUTSIDE_M, Point};
 use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, row};
-use super::body::{Body, FRESH, least};
+use super::body::{Body, FRESH, Stand, least};
 use super::lanes::{LANES, tagged};
 use super::model::MAX_POINTS;
 use super::track::Track;
-use ground::{FAR_OUTSIDE_M, Point};
 use passage::{Lowest, Passage};
-
-pub(super) use areas::Areas;
-pub use areas::Grounds;
-pub(super) use rooms::Rooms;
-pub(super) use stand::Stand;
 
 /// Leeways that differ by less are measured where only the least one counts, metres: rounding decides between them.
 const SAME_M: f64 = 1e-9;

@@ -1,13 +1,9 @@
 //! One unit over the step between two head stations: what each piece of its sides has left (docs/proof.md, section 11).
 
-use crate::stet::body::Point as BodyPoint;
+use crate::stet::areas::{Areas, FAR_OUTSIDE_M, Point, SweptPiece, apart};
+use crate::stet::body::{Point as BodyPoint, Rooms, Stand};
 use crate::stet::model::MAX_POINTS;
 use crate::stet::track::Track;
-
-use super::areas::Areas;
-use super::ground::{FAR_OUTSIDE_M, Point, SweptPiece, apart};
-use super::rooms::Rooms;
-use super::stand::Stand;
 
 /// Share by which the motion's second derivative, taken at the stations, may be greater between them.
 const BETWEEN: f64 = 1.25;

@@ -1,13 +1,10 @@
 //! Nominal room in areas, for planning.
 
 use crate::stet::block::Minima;
-use crate::stet::body::{Body, least};
+use crate::stet::body::{Body, PIECE_M, Stand, least};
 use crate::stet::lanes::tagged;
 use crate::stet::model::MAX_POINTS;
 use crate::stet::track::Track;
-
-use super::rooms::PIECE_M;
-use super::stand::Stand;
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
 pub(super) fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MAX_POINTS], minima: &mut Minima) {

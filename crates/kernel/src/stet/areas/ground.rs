@@ -4,9 +4,9 @@ use netcert_base::corridor::Area;
 use netcert_base::watch;
 
 /// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
-pub(super) const FAR_OUTSIDE_M: f64 = -300.0;
+pub(in crate::stet) const FAR_OUTSIDE_M: f64 = -300.0;
 /// A place in the plane, metres.
-pub(super) type Point = [f64; 2];
+pub(in crate::stet) type Point = [f64; 2];
 
 /// Side of a cell, metres.
 const CELL_M: f64 = 3.0;
@@ -38,15 +38,15 @@ struct Cell {
 }
 
 /// A piece of a side over a step.
-pub(super) struct SweptPiece<'a> {
+pub(in crate::stet) struct SweptPiece<'a> {
     /// Its ends at both stations.
-    pub(super) before: [Point; 2],
-    pub(super) after: [Point; 2],
+    pub(in crate::stet) before: [Point; 2],
+    pub(in crate::stet) after: [Point; 2],
     /// Most that its places may move in any direction, and both ends in a given one, metres. Between the ends it is convex.
-    pub(super) most: f64,
-    pub(super) stray: &'a dyn Fn(Point) -> [f64; 2],
+    pub(in crate::stet) most: f64,
+    pub(in crate::stet) stray: &'a dyn Fn(Point) -> [f64; 2],
     /// A leeway of at least this much need not be exact.
-    pub(super) enough: f64,
+    pub(in crate::stet) enough: f64,
 }
 
 impl SweptPiece<'_> {
@@ -109,7 +109,7 @@ pub(crate) struct Ground {
 
 impl Ground {
     /// `None` if the boundary has no segment, is not finite, or is too large for a grid. Nothing is inside then.
-    pub(super) fn new(area: &Area) -> Option<Self> {
+    pub(in crate::stet) fn new(area: &Area) -> Option<Self> {
         let segments: Vec<Segment> = area.segments().map(Segment::new).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in segments.iter().map(|segment| segment.a) {
@@ -255,7 +255,7 @@ impl Ground {
     }
 
     /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
-    pub(super) fn room(&self, p: Point) -> f64 {
+    pub(in crate::stet) fn room(&self, p: Point) -> f64 {
         self.room_and_nearest(p).0
     }
 
@@ -296,7 +296,7 @@ impl Ground {
     /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
     /// stations; the leeway is less by what the piece may move towards each segment. Neither is too great. Both are negative where
     /// the hull is not inside. With `inside`, the piece is known to be inside at the first station.
-    pub(super) fn swept(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
+    pub(in crate::stet) fn swept(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
         let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
         let outside = || {
             let depth = self.depth(piece);
@@ -385,7 +385,7 @@ impl Ground {
     }
 
     /// Whether any vertex of the boundary lies within a rectangle: an island may be so small that no side of it is near.
-    pub(super) fn under(&self, corners: [Point; 4]) -> bool {
+    pub(in crate::stet) fn under(&self, corners: [Point; 4]) -> bool {
         let within = |p: Point| {
             (0..4).all(|i| {
                 let (a, b) = (corners[i], corners[(i + 1) % 4]);
@@ -410,7 +410,7 @@ fn crossing(a: Point, b: Point, y: f64) -> f64 {
 }
 
 #[inline]
-pub(super) fn apart(a: Point, b: Point) -> f64 {
+pub(in crate::stet) fn apart(a: Point, b: Point) -> f64 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
 

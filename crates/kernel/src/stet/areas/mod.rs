@@ -1,11 +1,13 @@
-//! Which areas count at which stations of the steer axle.
+//! Which areas count at which stations of the steer axle, and the room that each leaves ([`ground`]).
+
+mod ground;
 
 use std::cell::RefCell;
 use std::sync::Arc;
 
 use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
-use super::ground::Ground;
+pub(super) use ground::{FAR_OUTSIDE_M, Ground, Point, SweptPiece, apart};
 
 /// A span of stations of the steer axle, with its area.
 #[derive(Clone)]
@@ -35,10 +37,10 @@ impl Grounds {
 }
 
 /// The areas of a corridor, prepared for its extended stations.
-pub(in crate::stet) struct Areas(Vec<Window>);
+pub(super) struct Areas(Vec<Window>);
 
 impl Areas {
-    pub(in crate::stet) fn new(corridor: &Corridor, lead: usize, grounds: &Grounds) -> Self {
+    pub(super) fn new(corridor: &Corridor, lead: usize, grounds: &Grounds) -> Self {
         let last = corridor.len().saturating_sub(1);
         let window = |span: &AreaSpan| Window {
             first: lead + span.heads.start.min(last),
@@ -49,7 +51,7 @@ impl Areas {
     }
 
     /// The areas for every second station.
-    pub(in crate::stet) fn coarse(&self, first: usize) -> Self {
+    pub(super) fn coarse(&self, first: usize) -> Self {
         let half = |w: &Window| Window {
             first: w.first.saturating_sub(first).div_ceil(2),
             last: w.last.saturating_sub(first) / 2,
@@ -58,7 +60,7 @@ impl Areas {
         Self(self.0.iter().map(half).collect())
     }
 
-    pub(in crate::stet) fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
@@ -76,14 +78,14 @@ impl Areas {
 
     /// Whether any area counts near the given stations of the steer axle.
     #[inline(always)]
-    pub(in crate::stet) fn touch(&self, from: usize, to: usize) -> bool {
+    pub(super) fn touch(&self, from: usize, to: usize) -> bool {
         self.0.iter().any(|w| w.first <= to && from <= w.last)
     }
 
     /// Whether areas count from the step before station `from` to the step behind station `to`. The corridor's edges then
     /// do not matter.
     #[inline(always)]
-    pub(in crate::stet) fn replace(&self, from: usize, to: usize) -> bool {
+    pub(super) fn replace(&self, from: usize, to: usize) -> bool {
         (from.saturating_sub(1)..=to).all(|k| self.over(k))
     }
 

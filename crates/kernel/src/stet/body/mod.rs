@@ -1,13 +1,18 @@
 //! Bodies, their points, and the stations under them. Each point's foot is followed from station to station. Each point
 //! records which stations it has passed (proof, section 7, Feet).
 
+mod rooms;
+mod stand;
+
 use super::block::{BLOCK, Feet, LOST_M, Minima};
 use super::group::gamma;
 use super::lanes::{LANES, Vector, tagged};
 use super::model::Model;
-use super::plane::{Rooms, Stand};
 use super::tag::tag;
 use super::track::{Fields, Track};
+
+pub(super) use rooms::{PIECE_M, Rooms};
+pub(super) use stand::Stand;
 
 /// A foot farther along than this (metres) is searched again.
 pub(super) const NEAR_M: f64 = 1.0;

@@ -1,39 +1,38 @@
 //! The room of the pieces of a unit's sides, carried from step to step.
 
-use super::areas::Areas;
-use super::ground::{FAR_OUTSIDE_M, Point, apart};
+use crate::stet::areas::{Areas, FAR_OUTSIDE_M, Point, apart};
 
 /// Sides are covered in pieces no longer than this, metres. The hull of a piece over a step is little larger than what the piece
 /// sweeps.
-pub(super) const PIECE_M: f64 = 1.4;
+pub(in crate::stet) const PIECE_M: f64 = 1.4;
 
 /// A piece of a side between two body points.
-pub(super) struct SidePiece {
+pub(in crate::stet) struct SidePiece {
     /// The body point behind it, and the one near it.
-    pub(super) index: usize,
-    pub(super) point: usize,
+    pub(in crate::stet) index: usize,
+    pub(in crate::stet) point: usize,
     /// Its ends, metres ahead of the axle.
-    pub(super) ends: [f64; 2],
+    pub(in crate::stet) ends: [f64; 2],
     /// 0 left, 1 right.
-    pub(super) side: usize,
+    pub(in crate::stet) side: usize,
 }
 
 /// Rooms of a unit's pieces, carried from step to step. A piece that moves by a metre loses at most a metre of room. A piece that slides
 /// along its side goes where it was itself and the piece ahead of it, and loses what it moves aside. So most pieces need not be
 /// measured in most steps.
 pub(in crate::stet) struct Rooms {
-    pub(super) pieces: Vec<SidePiece>,
-    pub(super) rooms: Vec<f64>,
+    pub(in crate::stet) pieces: Vec<SidePiece>,
+    pub(in crate::stet) rooms: Vec<f64>,
     /// The rooms in the step before.
-    pub(super) before: Vec<f64>,
+    pub(in crate::stet) before: Vec<f64>,
     /// By side: room of its half of the front edge.
-    pub(super) front: [f64; 2],
+    pub(in crate::stet) front: [f64; 2],
     /// By side: the piece with the least leeway in the last step. It is measured first.
-    pub(super) critical: [usize; 2],
+    pub(in crate::stet) critical: [usize; 2],
     /// The station after the last step.
     head: usize,
     /// Without disturbances: the places that were measured last, with their rooms.
-    pub(super) places: Vec<(Point, f64)>,
+    pub(in crate::stet) places: Vec<(Point, f64)>,
 }
 
 impl Rooms {
@@ -62,7 +61,7 @@ impl Rooms {
     }
 
     /// Forgets the rooms unless they are those of the step before station `head`.
-    pub(super) fn enter(&mut self, head: usize, anew: bool) {
+    pub(in crate::stet) fn enter(&mut self, head: usize, anew: bool) {
         if self.head != head || anew {
             self.rooms.fill(f64::NEG_INFINITY);
             self.front = [f64::NEG_INFINITY; 2];
@@ -73,7 +72,14 @@ impl Rooms {
 
     /// The room of a place without disturbances, unless it is known to be at least `enough`: it falls by no more than the place has moved
     /// since it was measured. Places are numbered.
-    pub(super) fn nominal(&mut self, areas: &Areas, head: usize, number: usize, p: Point, enough: f64) -> Option<f64> {
+    pub(in crate::stet) fn nominal(
+        &mut self,
+        areas: &Areas,
+        head: usize,
+        number: usize,
+        p: Point,
+        enough: f64,
+    ) -> Option<f64> {
         let known = self.places.get(number);
         if known.is_some_and(|(q, room)| room - apart(*q, p) >= enough) {
             return None;
@@ -88,7 +94,7 @@ impl Rooms {
     }
 
     /// The room in the step before of the piece and of the one ahead of it on its side, if the latter is at least this long.
-    pub(super) fn slid(&self, number: usize, slide: f64) -> Option<f64> {
+    pub(in crate::stet) fn slid(&self, number: usize, slide: f64) -> Option<f64> {
         let (own, ahead) = (self.before.get(number)?, number.checked_sub(2)?);
         (self.pieces[ahead].length() >= slide).then(|| own.min(self.before[ahead]))
     }

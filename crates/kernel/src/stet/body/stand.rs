@@ -1,33 +1,33 @@
 //! Where a unit stands at a head station, and what bounds its deviations there.
 
+use crate::stet::areas::Point;
 use crate::stet::block::{BLOCK, row};
-use crate::stet::body::Body;
 use crate::stet::model::MAX_POINTS;
 
-use super::ground::Point;
+use super::Body;
 
 /// A unit at a head station.
 pub(in crate::stet) struct Stand {
-    pub(super) head: usize,
-    pub(super) axle: Point,
-    pub(super) along: Point,
+    pub(in crate::stet) head: usize,
+    pub(in crate::stet) axle: Point,
+    pub(in crate::stet) along: Point,
     /// Way of the axle to the next station, metres, and change of its curvature per metre, 1/m².
-    pub(super) way: f64,
-    pub(super) jerk: f64,
+    pub(in crate::stet) way: f64,
+    pub(in crate::stet) jerk: f64,
     /// Bounds of how far each body point is off across the nominal heading, to first order, metres; and of the heading, radians.
-    pub(super) across: [f64; MAX_POINTS],
-    pub(super) turned: f64,
+    pub(in crate::stet) across: [f64; MAX_POINTS],
+    pub(in crate::stet) turned: f64,
 }
 
 impl Stand {
     #[inline]
-    pub(super) fn place(&self, ahead: f64, aside: f64) -> Point {
+    pub(in crate::stet) fn place(&self, ahead: f64, aside: f64) -> Point {
         let [x, y] = self.along;
         [self.axle[0] + ahead * x - aside * y, self.axle[1] + ahead * y + aside * x]
     }
 
     /// The unit at station `k` of the block that begins at station `head`.
-    pub(super) fn read<const REFINED: bool>(
+    pub(in crate::stet) fn read<const REFINED: bool>(
         body: &Body,
         block: &[f64],
         refined: &[f64],
