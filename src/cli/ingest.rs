@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::{Args, ValueHint};
-use netcert::osm::facts::{Countries, Rules};
+use netcert::osm::facts::{Countries, Rules, TrafficSide};
 use netcert::pipeline::{self, EDGES_AT_ONCE, Selection};
 use serde_json::json;
 
@@ -175,7 +175,8 @@ impl Roads {
             countries = countries.in_country(code)?;
         }
         Ok(match self.driving_side.as_deref() {
-            Some(side) => countries.driving_on_the_left(side == "left"),
+            Some("left") => countries.driving_on(TrafficSide::Left),
+            Some(_) => countries.driving_on(TrafficSide::Right),
             None => countries,
         })
     }

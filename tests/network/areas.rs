@@ -4,7 +4,7 @@ use std::fs;
 
 use geo::{Area as _, BooleanOps as _, Contains as _, Distance as _, Euclidean};
 use netcert::network::build;
-use netcert::osm::facts::{AreaKind, Policy, RoadClass};
+use netcert::osm::facts::{AreaKind, Policy, RoadClass, TrafficSide};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{self, NodeRecord, WayRecord};
 use netcert::osm::{Extract, LonLat};
@@ -46,7 +46,7 @@ fn corner(drawn: &Drawn) -> TurnCorridors {
 }
 
 fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
-    Drawn::new(map, false, kerb_m).best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
+    Drawn::new(map, TrafficSide::Right, kerb_m).best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn a_mapped_surface_stands_for_the_kerb() {
     // As mapped, and no rounder, whatever is assumed elsewhere.
     let tight = narrow().area('B', &square(4.0), SURFACE);
     assert!((rsc_m(&tight, 15.0) - sharp).abs() < 0.2 && rsc_m(&narrow(), 15.0) > sharp + 0.5);
-    let drawn = Drawn::new(&tight, false, 15.0);
+    let drawn = Drawn::new(&tight, TrafficSide::Right, 15.0);
     for turn in drawn.facts() {
         assert_eq!((turn.kerb_radius_m, turn.kerb_source), (None, Some(KerbSource::Mapped)));
     }
@@ -69,8 +69,8 @@ fn a_mapped_surface_stands_for_the_kerb() {
 fn nothing_counts_that_neither_a_road_nor_the_surface_covers() {
     // Cut off from 9 m east on in the south, so that the corner is lopsided.
     let ring = [[-20.0, -20.0], [9.0, -20.0], [9.0, -6.0], [20.0, -6.0], [20.0, 20.0], [-20.0, 20.0]];
-    let bare = corner(&Drawn::new(&cross(), false, 0.0));
-    let mapped = corner(&Drawn::new(&cross().area('B', &ring, SURFACE), false, 0.0));
+    let bare = corner(&Drawn::new(&cross(), TrafficSide::Right, 0.0));
+    let mapped = corner(&Drawn::new(&cross().area('B', &ring, SURFACE), TrafficSide::Right, 0.0));
     let added = mapped.area.difference(&bare.area);
     let node = node_of(&mapped);
     // All corners of the crossing count, as far as the surface covers them. The corner of this turn:
@@ -128,7 +128,7 @@ fn islands_on_a_surface_are_no_road() {
 
 #[test]
 fn a_surface_counts_for_the_roads_of_its_class_at_the_nodes_inside_it() {
-    let source = |map: &AsciiMap| Drawn::new(map, false, 6.0).turn("EBC").kerb_source;
+    let source = |map: &AsciiMap| Drawn::new(map, TrafficSide::Right, 6.0).turn("EBC").kerb_source;
     assert_eq!(source(&cross()), Some(KerbSource::Assumed));
     assert_eq!(source(&cross().area('B', &square(10.0), "area:highway=secondary_link")), Some(KerbSource::Mapped));
     assert_eq!(source(&cross().area('B', &square(10.0), "area:highway=service")), Some(KerbSource::Assumed));

@@ -8,7 +8,7 @@ use netcert_testing::catalogue::catalogued;
 use netcert_testing::junctions::Drawn;
 
 use netcert::network::MovementKind;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::turns::LengthClass;
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
@@ -27,7 +27,7 @@ fn bent(degrees: f64, street: bool) -> Drawn {
         [('A', [-200.0, 0.0]), ('b', [0.0, 0.0]), ('C', onwards([0.0; 2], 200.0, degrees)), ('S', [0.0, -150.0])];
     let map = AsciiMap::placed(if street { &places } else { &places[..3] }).way("AbC", ROAD);
     let map = if street { map.way("Sb", "highway=residential width=6") } else { map };
-    Drawn::new(&map, false, 4.0)
+    Drawn::new(&map, TrafficSide::Right, 4.0)
 }
 
 /// The road A–b–c–D with streets at b and c. It turns left at b and right at c, `apart_m` behind it.
@@ -43,7 +43,7 @@ fn jogged(degrees: f64, apart_m: f64) -> Drawn {
     ];
     let streets = "highway=residential width=6";
     let map = AsciiMap::placed(&places).way("AbcD", ROAD).way("Sb", streets).way("cN", streets);
-    Drawn::new(&map, false, 4.0)
+    Drawn::new(&map, TrafficSide::Right, 4.0)
 }
 
 /// How the road goes on from one edge into another.

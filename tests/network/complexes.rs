@@ -11,7 +11,7 @@ use netcert_testing::routing::Region;
 use geo::{BooleanOps as _, BoundingRect as _, Distance as _, Euclidean};
 use netcert::network::PassageKind;
 use netcert::osm::Via;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::route::{Measure, PartKind, Position, Question, passes_over};
 use netcert::stop::Stop;
 use netcert::turns::{Kerbs, LengthClass};
@@ -37,7 +37,7 @@ const ROAD: &str = "highway=secondary width=9";
 const STREETS: &str = "highway=tertiary width=8";
 
 fn drawn(map: &AsciiMap) -> Drawn {
-    Drawn::new(map, false, 4.0)
+    Drawn::new(map, TrafficSide::Right, 4.0)
 }
 
 /// The ends of all passages, such as `NS`.

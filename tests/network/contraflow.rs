@@ -3,7 +3,7 @@
 use netcert::certify::{Job, certify_network};
 use netcert::corridor::{Params, stroke_corridor};
 use netcert::network::Network;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::reporter::Silent;
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
@@ -29,7 +29,7 @@ fn street(tags: &str) -> Drawn {
     .way("BCD", &format!("highway=secondary oneway=yes {tags}"))
     .way("BE", "highway=residential")
     .way("CF", "highway=residential");
-    Drawn::new(&map, false, 6.0)
+    Drawn::new(&map, TrafficSide::Right, 6.0)
 }
 
 /// The widths along the stroke of an edge.

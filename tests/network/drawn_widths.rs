@@ -2,7 +2,7 @@
 //! `tools/soak` draws more and larger ones.
 
 use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::reporter::Silent;
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
@@ -77,7 +77,11 @@ fn networks_of_any_widths_are_certified_with_bounded_work() {
     let mut draw = Draw(0x2545_f491_4f6c_dd1d);
     let mut safe = 0;
     for number in 0..NETWORKS {
-        let drawn = Drawn::new(&draw.network(), draw.below(2) == 0, draw.metres(300, 1200));
+        let drawn = Drawn::new(
+            &draw.network(),
+            if draw.below(2) == 0 { TrafficSide::Left } else { TrafficSide::Right },
+            draw.metres(300, 1200),
+        );
         let network = &drawn.network;
         let policy = [Policy::Lane, Policy::Direction, Policy::Carriageway][draw.below(3) as usize];
         let vehicle = ["EU-SEMI16.5", "US-WB40", "AU-SEMI19", "BUS-ART18-EU"][draw.below(4) as usize];

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use geo::{Area as _, BooleanOps as _};
 use netcert::network::{Network, Portion, build};
-use netcert::osm::facts::{AreaKind, Policy, RoadClass};
+use netcert::osm::facts::{AreaKind, Policy, RoadClass, TrafficSide};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::store::{Database, Run};
@@ -38,7 +38,7 @@ fn cross() -> AsciiMap {
 }
 
 fn with(island: &[[f64; 2]]) -> Drawn {
-    Drawn::new(&cross().area('B', island, ISLAND), false, KERB_M)
+    Drawn::new(&cross().area('B', island, ISLAND), TrafficSide::Right, KERB_M)
 }
 
 fn made(drawn: &Drawn) -> TurnCorridors {
@@ -80,7 +80,7 @@ fn stored(network: &Network) -> Network {
 
 #[test]
 fn an_island_closes_a_turn_before_and_after_a_reload() {
-    let free = Drawn::new(&cross(), false, KERB_M);
+    let free = Drawn::new(&cross(), TrafficSide::Right, KERB_M);
     let closed = with(&IN_THE_WAY);
     assert!(
         rsc_m(&free).unwrap() > 0.3 && rsc_m(&closed).unwrap_or(-1.0) < 0.0,
@@ -102,7 +102,7 @@ fn an_island_closes_a_turn_before_and_after_a_reload() {
 fn an_island_beside_the_road_changes_nothing() {
     let beside = with(&[[14.0, -14.0], [18.0, -14.0], [18.0, -10.0], [14.0, -10.0]]);
     assert_eq!(beside.network.areas.all().len(), 1);
-    assert_eq!(made(&beside), made(&Drawn::new(&cross(), false, KERB_M)));
+    assert_eq!(made(&beside), made(&Drawn::new(&cross(), TrafficSide::Right, KERB_M)));
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn an_island_at_the_end_of_a_road_is_not_undone_by_the_road_beyond() {
     let short = |map: AsciiMap| {
         Drawn::new(
             &map.way("ABC", "highway=secondary width=7.3").way("DBE", "highway=secondary width=7.3"),
-            false,
+            TrafficSide::Right,
             KERB_M,
         )
     };
@@ -180,7 +180,7 @@ fn a_crossing_of_hundreds_of_nodes_has_an_area_of_a_few() {
     for (a, b) in on.iter().zip(&off) {
         map = map.way(&format!("{a}{b}"), road);
     }
-    let drawn = Drawn::new(&map, false, KERB_M);
+    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
     let turn = drawn.facts().into_iter().find(|turn| {
         let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge as usize]);
         from.from_node == i64::from(u32::from('E')) && to.to_node == i64::from(u32::from(on[101]))
@@ -206,7 +206,7 @@ fn a_node_of_forty_roads_has_turns_without_its_other_roads() {
     let map = ends
         .iter()
         .fold(AsciiMap::placed(&nodes), |map, end| map.way(&format!("B{end}"), "highway=secondary width=7.3"));
-    let drawn = Drawn::new(&map, false, KERB_M);
+    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
     let area =
         |name: String| drawn.corridors(&name, Policy::Carriageway, LengthClass::Short).unwrap().area.unsigned_area();
     let across = area(format!("{}B{}", ends[0], ends[12]));
@@ -217,7 +217,7 @@ fn a_node_of_forty_roads_has_turns_without_its_other_roads() {
 #[test]
 fn hundreds_of_equal_islands_are_one() {
     let map = (0..300).fold(cross(), |map, _| map.area('B', &IN_THE_WAY, ISLAND));
-    let drawn = Drawn::new(&map, false, KERB_M);
+    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
     let (one, all) = (made(&with(&IN_THE_WAY)).area, made(&drawn).area);
     assert_eq!(drawn.network.areas.all().len(), 300);
     assert!((one.unsigned_area() - all.unsigned_area()).abs() < 1e-3);

@@ -1,7 +1,7 @@
 //! A larger measured width never takes a certificate away.
 
 use netcert::certify::{TurnJob, certify_turns};
-use netcert::osm::facts::{Policy, WidthSource};
+use netcert::osm::facts::{Policy, TrafficSide, WidthSource};
 use netcert::reporter::Silent;
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
@@ -24,7 +24,7 @@ fn crossing(angle_deg: f64, kerb_m: f64, classes: [&str; 2]) -> Drawn {
     ])
     .way("ABC", classes[0])
     .way("EBD", classes[1]);
-    Drawn::new(&map, false, kerb_m)
+    Drawn::new(&map, TrafficSide::Right, kerb_m)
 }
 
 /// For each turn: the RSC where it is safe, with all roads measured at the widths given.

@@ -10,7 +10,7 @@ use netcert_testing::roundabout::{RING, map};
 use geo::{Distance as _, Euclidean};
 use netcert::explain::explain_turn;
 use netcert::osm::Via;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::Model;
@@ -22,7 +22,7 @@ use netcert_testing::oracle::fight;
 
 fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Drawn {
     let tags = |width: f64| format!("highway=secondary width={width}");
-    Drawn::new(&map(radius_m, &tags(ring_m), &tags(arm_m), false), false, kerb_m)
+    Drawn::new(&map(radius_m, &tags(ring_m), &tags(arm_m), TrafficSide::Right), TrafficSide::Right, kerb_m)
 }
 
 #[test]
@@ -70,8 +70,8 @@ fn who_gets_straight_over_depends_on_the_ring() {
 #[test]
 fn driving_on_the_left_mirrors_every_passage() {
     let tags = "highway=secondary width=8";
-    let right = Drawn::new(&map(22.0, tags, tags, false), false, 12.0);
-    let left = Drawn::new(&map(22.0, tags, tags, true), true, 12.0);
+    let right = Drawn::new(&map(22.0, tags, tags, TrafficSide::Right), TrafficSide::Right, 12.0);
+    let left = Drawn::new(&map(22.0, tags, tags, TrafficSide::Left), TrafficSide::Left, 12.0);
     for ends in ["WS", "WE", "WN"] {
         let rsc = |drawn: &Drawn| drawn.best(ends, Policy::Carriageway, "EU-SEMI16.5").unwrap();
         let (a, b) = (rsc(&right), rsc(&left));
@@ -85,12 +85,12 @@ fn driving_on_the_left_mirrors_every_passage() {
 fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
     let tags = "highway=secondary width=8";
     let whole = ring(20.0, 8.0, 8.0, 12.0);
-    let mut map = map(20.0, tags, tags, false);
+    let mut map = map(20.0, tags, tags, TrafficSide::Right);
     map = map.without_way(1);
     for (id, nodes) in [(11, "defghijklmno"), (12, "opqrstuvwxabcd")] {
         map = map.way_of_id(id, nodes, &format!("junction=roundabout {tags}"));
     }
-    let pieces = Drawn::new(&map, false, 12.0);
+    let pieces = Drawn::new(&map, TrafficSide::Right, 12.0);
     assert_eq!(pieces.passages().len(), 12);
     for ends in ["WE", "NS", "EN", "SW"] {
         let made = |drawn: &Drawn| drawn.corridors(ends, Policy::Carriageway, LengthClass::Short).unwrap().on_road();
@@ -110,8 +110,9 @@ fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
 #[test]
 fn one_way_arms_only_enter_or_leave() {
     let tags = "highway=secondary width=8";
-    let map = map(20.0, tags, tags, false).without_way(2).way_of_id(2, "Wa", &format!("{tags} oneway=yes"));
-    let drawn = Drawn::new(&map, false, 12.0);
+    let map =
+        map(20.0, tags, tags, TrafficSide::Right).without_way(2).way_of_id(2, "Wa", &format!("{tags} oneway=yes"));
+    let drawn = Drawn::new(&map, TrafficSide::Right, 12.0);
     // Four ways in and three out; no exit where the vehicle entered.
     assert_eq!(drawn.passages().len(), 3 + 3 * 2);
     let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to as usize].to_node != id_of('W');
@@ -226,7 +227,7 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
 #[test]
 fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
     let ring = "highway=secondary width=8 maxweight=abc";
-    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", false), false, 12.0);
+    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
     let turns = drawn.facts();
     let over = drawn.passage("WE");
     for (on_the_ring, expected) in [
@@ -249,7 +250,7 @@ fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
 #[test]
 fn a_passage_over_an_arc_that_is_closed_at_night_is_certified_for_the_day() {
     let ring = "highway=secondary width=8 hgv:conditional=no@(22:00-06:00)";
-    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", false), false, 12.0);
+    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
     let turns = drawn.facts();
     let over = drawn.passage("WE");
     let time = Verdict::Unknown(UnknownReason::Time);
@@ -268,13 +269,13 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
     let tags = "highway=secondary width=8";
     let ring = 1;
     let east = 4;
-    let map = map(20.0, tags, tags, false).restriction(
+    let map = map(20.0, tags, tags, TrafficSide::Right).restriction(
         &[ring],
         Via::Nodes(vec![id_of('m')]),
         &[east],
         "restriction=no_right_turn",
     );
-    let drawn = Drawn::new(&map, false, 12.0);
+    let drawn = Drawn::new(&map, TrafficSide::Right, 12.0);
     assert!(drawn.passage("WE").movement.forbidden.is_some());
     assert!(drawn.passage("WN").movement.forbidden.is_none());
     let safe = vec![Verdict::Safe; drawn.network.edges.len()];

@@ -9,7 +9,7 @@ use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
 use netcert::network::{Movement, PassageKind};
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::route::*;
 use netcert::stet::certify_planned;
 use netcert::stop::Stop;
@@ -27,7 +27,7 @@ fn region(map: &AsciiMap, kerb_m: f64) -> Region {
 /// A ring of 20 m radius with four arms at right angles.
 fn roundabout() -> AsciiMap {
     let tags = "highway=secondary width=8";
-    roundabout::map(20.0, tags, tags, false)
+    roundabout::map(20.0, tags, tags, TrafficSide::Right)
 }
 
 fn edge(region: &Region, ends: &str) -> u32 {

@@ -7,7 +7,7 @@ use netcert_testing::junctions::Drawn;
 use netcert::corridor::{Params, StrokeCorridor, TaperCause, stroke_corridor};
 use netcert::explain::{explain_edge, words};
 use netcert::network::Network;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
@@ -52,7 +52,7 @@ fn parted(tags: &str, carriageway: &str, [jog_m, reach_m]: [f64; 2], side: f64) 
     ];
     let one_way = format!("{carriageway} oneway=yes");
     let map = AsciiMap::placed(&nodes).way("AB", tags).way("BCD", &one_way).way("EFB", &one_way);
-    Drawn::new(&map, side < 0.0, 5.0)
+    Drawn::new(&map, if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
 }
 
 const ROAD: &str = "highway=secondary lanes=2";
@@ -100,7 +100,7 @@ fn without_a_second_carriageway_or_a_jog_nothing_is_made_up() {
     // The road becomes one-way, and its line bends like a jog.
     let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [320.0, -1.625]), ('D', [700.0, -1.625])];
     let map = AsciiMap::placed(&nodes).way("AB", ROAD).way("BCD", &format!("{CARRIAGEWAY} oneway=yes"));
-    let alone = Drawn::new(&map, false, 5.0);
+    let alone = Drawn::new(&map, TrafficSide::Right, 5.0);
     assert!(narrowest(&corridor(&alone.network, "AB", Policy::Lane)) < 1.7);
 }
 
@@ -116,7 +116,7 @@ fn becomes_narrow_at_an_angle(beyond: &str, side_road: bool, aside_m: f64) -> Dr
         .way("AB", "highway=secondary width=7")
         .way("BC", &format!("highway=secondary {beyond}"));
     let map = if side_road { map.way("DB", "highway=secondary width=7") } else { map };
-    Drawn::new(&map, false, 9.0)
+    Drawn::new(&map, TrafficSide::Right, 9.0)
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn widened(length_m: f64, side: f64) -> Drawn {
     let map = AsciiMap::placed(&nodes)
         .way("AB", ROAD)
         .way("BC", "highway=secondary lanes=3 lanes:forward=1 lanes:backward=2");
-    Drawn::new(&map.way("CD", ROAD), side < 0.0, 5.0)
+    Drawn::new(&map.way("CD", ROAD), if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
 }
 
 #[test]

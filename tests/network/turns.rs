@@ -11,7 +11,7 @@ use ascii_map::{AsciiMap, id_of};
 use geo::{Contains as _, Distance as _, Euclidean};
 use netcert::explain::{KerbHint, explain_turn, words};
 use netcert::osm::Via;
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::Model;
@@ -31,7 +31,7 @@ const CROSS: &str = "
 
 fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Drawn {
     let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
-    Drawn::new(&map, left_hand_traffic, kerb_m)
+    Drawn::new(&map, if left_hand_traffic { TrafficSide::Left } else { TrafficSide::Right }, kerb_m)
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
         .way("ABC", "highway=secondary width=8 lanes=2")
         .way("DBE", "highway=tertiary width=6.5")
         .way("FCG", "highway=residential width=5.5");
-        let drawn = Drawn::new(&map, false, kerb_m);
+        let drawn = Drawn::new(&map, TrafficSide::Right, kerb_m);
         let mut looked_at = 0;
         for turn in drawn.facts() {
             let made =
@@ -184,7 +184,11 @@ fn two_mouths(apart: usize) -> Drawn {
     drawing.push_str(&"          |\n".repeat(6));
     drawing.push_str("          E\n");
     let tags = "highway=secondary width=7";
-    Drawn::new(&AsciiMap::drawn(8.0, &drawing).way("AB", tags).way("FG", tags).way("DBGE", tags), false, 6.0)
+    Drawn::new(
+        &AsciiMap::drawn(8.0, &drawing).way("AB", tags).way("FG", tags).way("DBGE", tags),
+        TrafficSide::Right,
+        6.0,
+    )
 }
 
 #[test]
@@ -255,7 +259,7 @@ fn a_roundabout_is_entered_and_left_by_turns() {
     .way("S3", "highway=tertiary width=7")
     .way("W4", "highway=tertiary width=7")
     .way("E2", "highway=tertiary width=7");
-    let drawn = Drawn::new(&map, false, 8.0);
+    let drawn = Drawn::new(&map, TrafficSide::Right, 8.0);
     let facts = drawn.facts();
     let (entry, exit) = (drawn.turn("W43"), drawn.turn("43S"));
     assert!(entry.angle_deg < 0.0 && exit.angle_deg < 0.0, "{} {}", entry.angle_deg, exit.angle_deg);
@@ -278,7 +282,7 @@ fn a_restriction_forbids_whatever_fits() {
         &[2],
         "restriction=no_right_turn",
     );
-    let drawn = Drawn::new(&map, false, 3.0);
+    let drawn = Drawn::new(&map, TrafficSide::Right, 3.0);
     let (certificates, _) = certified(&drawn, &["AGV-TUG4"], Policy::Lane, 1);
     let turns = drawn.facts();
     let of = |nodes: &str| {

@@ -132,7 +132,7 @@ impl<'a> SweptVehicle<'a> {
         let feet = self.chain.links.iter().enumerate().flat_map(|(unit, link)| {
             [-link.half_width, link.half_width].map(|b| {
                 let x = point(self.motion.pose(node, unit), link.rear, b);
-                foot(self.road, x, self.rough_foot(node, unit, link.rear)).map(|(s, ..)| s)
+                foot(self.road, x, self.rough_foot(node, unit, link.rear)).map(|foot| foot.s)
             })
         });
         feet.reduce(|least, s| Some(least?.min(s?))).flatten()

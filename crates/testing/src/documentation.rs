@@ -1,16 +1,19 @@
 //! What the examples of the documentation stand on.
 
+use netcert::osm::facts::Policy;
+use netcert::settings::Settings;
+
 /// The drawn region without turns, certified for a tug with four trailers. The folder goes with the first value.
 pub fn demo_region() -> (tempfile::TempDir, std::path::PathBuf) {
-    certified(false)
+    certified(&Settings { policy: Policy::Carriageway, turns: false, ..Settings::default() })
 }
 
 /// As [`demo_region`], with turns.
 pub fn demo_region_with_turns() -> (tempfile::TempDir, std::path::PathBuf) {
-    certified(true)
+    certified(&Settings { policy: Policy::Carriageway, turns: true, ..Settings::default() })
 }
 
-fn certified(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
+fn certified(settings: &Settings) -> (tempfile::TempDir, std::path::PathBuf) {
     use netcert::pipeline::{Ingest, Selection, ingest};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("demo.gpkg");
@@ -21,11 +24,7 @@ fn certified(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
         catalogue: &netcert::vehicle::Catalogue::builtin().expect("the catalogue"),
         selection: &Selection::Ids(vec!["AGV-TUG4".to_owned()]),
         countries: &netcert::osm::facts::Countries::load().expect("the countries"),
-        settings: &netcert::settings::Settings {
-            policy: netcert::osm::facts::Policy::Carriageway,
-            turns,
-            ..netcert::settings::Settings::default()
-        },
+        settings,
         edges_at_once: netcert::pipeline::EDGES_AT_ONCE,
         parameters: "{}".parse().expect("an object"),
         now: &|| "2026-01-01T00:00:00.000Z".to_owned(),
@@ -36,7 +35,6 @@ fn certified(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
 
 /// Before and behind a turn that the tug may take.
 pub fn two_places(path: &std::path::Path) -> [netcert::route::Position; 2] {
-    use netcert::osm::facts::Policy;
     use netcert::store::{Database, QueryOptions, TurnQuery};
     let mut database = Database::open(path).expect("the demo");
     let rows = database.query_turns(&TurnQuery::new("AGV-TUG4", Policy::Carriageway)).expect("its turns");

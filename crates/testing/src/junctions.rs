@@ -4,7 +4,7 @@
 use netcert::account::AccountRow;
 use netcert::certify::{TurnJob, best_of, certify_turns};
 use netcert::network::{Network, build};
-use netcert::osm::facts::{Countries, Jurisdiction, Policy, cross_sections};
+use netcert::osm::facts::{Countries, Jurisdiction, Policy, TrafficSide, cross_sections};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult};
@@ -24,12 +24,12 @@ pub struct Drawn {
 pub type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
 
 impl Drawn {
-    pub fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
+    pub fn new(map: &AsciiMap, side: TrafficSide, kerb_m: f64) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
-        let place = |_| Jurisdiction { country: *b"DE", left_hand_traffic };
+        let jurisdiction = |_| Jurisdiction { country: *b"DE", left_hand_traffic: side == TrafficSide::Left };
         let (network, _) =
-            build(map.extract(), &place, &|facts, place, ring| cross_sections(facts, place, ring, rules));
+            build(map.extract(), &jurisdiction, &|facts, at, ring| cross_sections(facts, at, ring, rules));
         Self { network, params: TurnParams { kerbs: Kerbs::everywhere(kerb_m), ..TurnParams::default() } }
     }
 

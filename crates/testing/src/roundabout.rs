@@ -1,5 +1,7 @@
 //! A drawn roundabout: a ring of 24 points with four arms at right angles.
 
+use netcert::osm::facts::TrafficSide;
+
 use crate::ascii_map::AsciiMap;
 
 /// The ring's nodes. Its way begins and ends at the first one.
@@ -10,8 +12,8 @@ const ARMS: [(char, char); 4] = [('W', 'a'), ('S', 'g'), ('E', 'm'), ('N', 's')]
 
 /// A map whose ring is way 1, followed by the arms. The ring runs counter-clockwise from the west, or clockwise for
 /// left-hand traffic, where N is in the south.
-pub fn map(radius_m: f64, ring: &str, arm: &str, left_hand_traffic: bool) -> AsciiMap {
-    let mirror = if left_hand_traffic { -1.0 } else { 1.0 };
+pub fn map(radius_m: f64, ring: &str, arm: &str, side: TrafficSide) -> AsciiMap {
+    let mirror = if side == TrafficSide::Left { -1.0 } else { 1.0 };
     let at = |turn: f64, m: f64| {
         let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
         [m * cos, m * sin * mirror]

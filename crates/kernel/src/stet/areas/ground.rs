@@ -47,6 +47,8 @@ pub(in crate::stet) struct SweptPiece<'a> {
     pub(in crate::stet) stray: &'a dyn Fn(Point) -> [f64; 2],
     /// A leeway of at least this much need not be exact.
     pub(in crate::stet) enough: f64,
+    /// Whether it is known to be inside at the first station.
+    pub(in crate::stet) inside: bool,
 }
 
 impl SweptPiece<'_> {
@@ -295,8 +297,8 @@ impl Ground {
 
     /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
     /// stations; the leeway is less by what the piece may move towards each segment. Neither is too great. Both are negative where
-    /// the hull is not inside. With `inside`, the piece is known to be inside at the first station.
-    pub(in crate::stet) fn swept(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
+    /// the hull is not inside.
+    pub(in crate::stet) fn swept(&self, piece: &SweptPiece<'_>) -> (f64, f64) {
         let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
         let outside = || {
             let depth = self.depth(piece);
@@ -307,7 +309,7 @@ impl Ground {
         let Some(cell) = self.cell(middle).filter(|_| reach < FAR_M) else { return outside() };
         let near = self.near(cell);
         let nearest = self.nearest(near, middle);
-        if !inside && !self.contains(middle) {
+        if !piece.inside && !self.contains(middle) {
             return outside();
         }
         let rough = nearest.0.sqrt() - reach;
@@ -527,7 +529,7 @@ mod tests {
     }
 
     fn room(before: [Point; 2], after: [Point; 2]) -> f64 {
-        yard().swept(&SweptPiece { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2] }, false).0
+        yard().swept(&SweptPiece { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2], inside: false }).0
     }
 
     #[test]
@@ -563,7 +565,7 @@ mod tests {
                 }
             }
             let depth = |enough: f64| {
-                let swept = SweptPiece { before, after, most: 0.0, enough, stray: &|_| [0.0; 2] };
+                let swept = SweptPiece { before, after, most: 0.0, enough, stray: &|_| [0.0; 2], inside: false };
                 ground.depth(&swept)
             };
             // What slides is prolonged, and the prolonged piece goes aside and turns, too.
@@ -582,8 +584,8 @@ mod tests {
     fn what_moves_along_an_edge_costs_no_leeway() {
         let (before, after) = ([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
         let stray = |towards: Point| [0.3 * towards[1].abs() + 0.1 * towards[0].abs(); 2];
-        let piece = SweptPiece { before, after, most: 0.4, enough: FAR_M, stray: &stray };
-        let (room, leeway) = yard().swept(&piece, false);
+        let piece = SweptPiece { before, after, most: 0.4, enough: FAR_M, stray: &stray, inside: false };
+        let (room, leeway) = yard().swept(&piece);
         assert!((room - 1.5).abs() < 1e-12 && (leeway - 1.4).abs() < 1e-12, "{room} {leeway}");
     }
 
@@ -622,8 +624,8 @@ mod tests {
             let corners = [before[0], before[1], after[1], after[0]];
             let gaps: Option<Vec<Point>> =
                 area.segments().map(|s| Segment::new(s).gap(&corners, &pairs(&corners))).collect();
-            let swept = SweptPiece { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2] };
-            let (room, leeway) = ground.swept(&swept, false);
+            let swept = SweptPiece { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2], inside: false };
+            let (room, leeway) = ground.swept(&swept);
             let Some(gaps) = gaps else {
                 assert!(room <= 0.0 && leeway <= -0.3, "{at:?}: {room} {leeway}");
                 continue;

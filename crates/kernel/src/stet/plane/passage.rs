@@ -148,11 +148,16 @@ impl<'a> Passage<'a> {
         CHORD * BETWEEN * (self.way * self.turn + lever * (self.turn * self.turn + uneven))
     }
 
+    /// Whether a piece that had this room in the step before is inside at the first station. Where several areas count, it may have been
+    /// in another one.
+    fn was_inside(&self, room: f64) -> bool {
+        room > 0.0 && self.areas.count(self.before.head, self.before.head + 1).nth(1).is_none()
+    }
+
     /// Room and leeway of a piece that has these ends at both stations: the greatest over the areas.
-    fn room(&self, piece: &SweptPiece<'_>, inside: bool) -> (f64, f64) {
-        let inside = inside && self.areas.count(self.before.head, self.before.head + 1).nth(1).is_none();
+    fn room(&self, piece: &SweptPiece<'_>) -> (f64, f64) {
         let rooms = self.areas.count(self.before.head, self.before.head + 1).map(|ground| match ground {
-            Some(ground) => ground.swept(piece, inside),
+            Some(ground) => ground.swept(piece),
             None => (FAR_OUTSIDE_M, FAR_OUTSIDE_M),
         });
         rooms.fold((FAR_OUTSIDE_M, FAR_OUTSIDE_M), |most, room| (most.0.max(room.0), most.1.max(room.1)))
@@ -172,7 +177,8 @@ impl<'a> Passage<'a> {
             return (left, left - most);
         }
         let stray = |towards: Point| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
-        self.room(&SweptPiece { before, after, most, enough, stray: &stray }, known > 0.0)
+        let inside = self.was_inside(known);
+        self.room(&SweptPiece { before, after, most, enough, stray: &stray, inside })
     }
 
     /// Whether something may already be under the body when the first step of an area begins.
@@ -235,8 +241,9 @@ impl<'a> Passage<'a> {
             left
         } else {
             let stray = |towards: Point| piece.ends.map(|ahead| self.stray(towards, ahead, aside) + sag);
-            let swept = SweptPiece { before, after, most, enough: lowest.leeway, stray: &stray };
-            let (room, leeway) = self.room(&swept, rooms.before[number] > 0.0);
+            let inside = self.was_inside(rooms.before[number]);
+            let swept = SweptPiece { before, after, most, enough: lowest.leeway, stray: &stray, inside };
+            let (room, leeway) = self.room(&swept);
             if leeway < lowest.leeway {
                 rooms.critical[piece.side] = number;
             }

@@ -11,6 +11,15 @@ use country_boundaries::{BOUNDARIES_ODBL_180X90, CountryBoundaries, LatLon};
 use crate::osm::LonLat;
 use crate::osm::facts::rules::{Rules, RulesError, country_code};
 
+/// The side of the road to which traffic keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrafficSide {
+    /// Left-hand traffic.
+    Left,
+    /// Right-hand traffic.
+    Right,
+}
+
 /// Country rules at a position, independent of tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Jurisdiction {
@@ -23,6 +32,10 @@ pub struct Jurisdiction {
 impl Jurisdiction {
     /// No country known; traffic keeps to the right.
     pub const NOWHERE: Jurisdiction = Jurisdiction { country: *b"ZZ", left_hand_traffic: false };
+
+    pub(super) fn side(&self) -> TrafficSide {
+        if self.left_hand_traffic { TrafficSide::Left } else { TrafficSide::Right }
+    }
 }
 
 /// Why positions cannot be looked up.
@@ -80,8 +93,8 @@ impl Countries {
 
     /// Overrides the driving side of every position (`--driving-side`).
     #[must_use]
-    pub fn driving_on_the_left(mut self, left: bool) -> Countries {
-        self.left_hand_traffic = Some(left);
+    pub fn driving_on(mut self, side: TrafficSide) -> Countries {
+        self.left_hand_traffic = Some(side == TrafficSide::Left);
         self
     }
 
@@ -322,7 +335,7 @@ mod tests {
     fn overrides_come_first() {
         let nz = Countries::load().unwrap().in_country("nz").unwrap();
         assert_eq!(nz.jurisdiction(at(8.69, 49.41)), Jurisdiction { country: *b"NZ", left_hand_traffic: true });
-        let odd = nz.driving_on_the_left(false);
+        let odd = nz.driving_on(TrafficSide::Right);
         assert_eq!(odd.jurisdiction(at(8.69, 49.41)), Jurisdiction { country: *b"NZ", left_hand_traffic: false });
         assert!(Countries::load().unwrap().in_country("Germany").is_err());
     }

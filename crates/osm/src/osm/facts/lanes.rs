@@ -3,10 +3,10 @@
 //! Tagged lanes count first, then those of the class. Lanes for other traffic (bus, cycle) are not open. Both
 //! directions share a road without marked lanes.
 
-use crate::osm::facts::Direction;
 use crate::osm::facts::layout::{Layout, SHARED, Segment, Use};
 use crate::osm::facts::section::{LISTED, LaneTags, Mark, in_metres};
 use crate::osm::facts::widths::{Builder, LANE_M, SHARED_BELOW_M, Traffic};
+use crate::osm::facts::{Direction, TrafficSide};
 
 impl Builder<'_> {
     /// The layout of a one-way road. Lanes of oncoming buses lie beyond its own.
@@ -27,7 +27,7 @@ impl Builder<'_> {
             other.used = Use::Paved;
         }
         others.reverse();
-        if self.left_hand_traffic {
+        if self.side == TrafficSide::Left {
             lanes.append(&mut others);
         } else {
             others.append(&mut lanes);
@@ -77,7 +77,7 @@ impl Builder<'_> {
         let centre_m = in_metres(self.tags.both_ways_steps).filter(|_| self.tags.both_ways > 0);
         let centre = Segment { width_m: centre_m, listed: centre_m.is_some(), ..Segment::new(None, Use::Paved) };
         let centre = (0..n_centre).map(|_| centre);
-        let lanes = if self.left_hand_traffic {
+        let lanes = if self.side == TrafficSide::Left {
             forward.extend(centre);
             forward.append(&mut backward);
             forward
@@ -122,7 +122,7 @@ impl Builder<'_> {
             other_tags.bound(narrowest);
             return (own_tags, other_tags);
         }
-        if !self.left_hand_traffic {
+        if self.side == TrafficSide::Right {
             // From the kerb of the direction's own side.
             steps.reverse();
             closed.reverse();
@@ -136,7 +136,7 @@ impl Builder<'_> {
         };
         // The other direction has its left where the own one has its right.
         let (own_lanes, other_lanes) = (0..n_own, n_own + n_centre..steps.len());
-        if self.left_hand_traffic {
+        if self.side == TrafficSide::Left {
             take(&mut own_tags, own_lanes.collect());
             take(&mut other_tags, other_lanes.rev().collect());
         } else {
@@ -208,7 +208,7 @@ impl Builder<'_> {
             (tags.listed, tagged.saturating_sub(number))
         };
         let mut order: Vec<usize> = (0..lanes.len()).collect();
-        if !self.left_hand_traffic {
+        if self.side == TrafficSide::Right {
             order.reverse();
         }
         for at in order {
@@ -225,7 +225,7 @@ impl Builder<'_> {
 
     /// The lanes of one direction (in direction of travel) from the kerb to the middle.
     fn lanes_from_kerb<'l>(&self, lanes: &'l mut [Segment]) -> Box<dyn Iterator<Item = &'l mut Segment> + 'l> {
-        if self.left_hand_traffic { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
+        if self.side == TrafficSide::Left { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
     }
 }
 

@@ -4,7 +4,7 @@
 //! a width, however small, and its edges are finite; otherwise there is no strip.
 
 use crate::osm::facts::section::{LaneLine, Placement};
-use crate::osm::facts::{CrossSection, Direction, Strip, WidthSource};
+use crate::osm::facts::{CrossSection, Direction, Strip, TrafficSide, WidthSource};
 
 /// Use of a part of the cross section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,9 +104,9 @@ impl Layout {
     }
 
     /// The strips of one direction of travel.
-    pub(super) fn section(&self, direction: Direction, left_hand_traffic: bool) -> CrossSection {
+    pub(super) fn section(&self, direction: Direction, side: TrafficSide) -> CrossSection {
         let mut inwards: Vec<usize> = (0..self.segments.len()).collect();
-        if !kerb_on_the_left_of_the_way(direction, left_hand_traffic) {
+        if !kerb_on_the_left_of_the_way(direction, side) {
             inwards.reverse();
         }
         let (Some(whole), Some(divided)) = (self.whole, self.divided) else { return NO_SECTION };
@@ -145,6 +145,6 @@ impl Layout {
 
 /// Whether the kerb of a direction's slow lane lies to the left of the node order. It does for left-hand traffic going
 /// forward, and for right-hand traffic going backward.
-pub(super) fn kerb_on_the_left_of_the_way(direction: Direction, left_hand_traffic: bool) -> bool {
-    left_hand_traffic == (direction == Direction::Forward)
+pub(super) fn kerb_on_the_left_of_the_way(direction: Direction, side: TrafficSide) -> bool {
+    (side == TrafficSide::Left) == (direction == Direction::Forward)
 }

@@ -40,7 +40,7 @@ use crate::osm::StringId;
 pub use areas::{AreaKind, area_kind};
 pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
 pub use class::{LEFT_OUT_REASONS, class_and_link, highway, way_facts};
-pub use country::{Countries, CountriesError, Jurisdiction};
+pub use country::{Countries, CountriesError, Jurisdiction, TrafficSide};
 pub use given::{GivenRoad, given_class};
 pub use legal::{At, Judgement, RuleSet};
 pub use limits::Kind as LimitKind;

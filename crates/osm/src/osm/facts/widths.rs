@@ -6,7 +6,7 @@
 //! says otherwise. If tags contradict each other, the narrower reading counts. A width counts however small it is: no
 //! assumed width replaces it.
 
-use crate::osm::facts::country::Jurisdiction;
+use crate::osm::facts::country::{Jurisdiction, TrafficSide};
 use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
 use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
 use crate::osm::facts::section::{Decimetres, Kerb, Mark, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
@@ -43,18 +43,17 @@ pub fn cross_sections(
         } else {
             rules.ramp_m(facts.class).filter(|_| facts.link)
         },
-        left_hand_traffic: jurisdiction.left_hand_traffic,
+        side: jurisdiction.side(),
         kerb_rule: rules.kerb,
     };
-    let one = |direction| builder.one_way(direction).section(direction, jurisdiction.left_hand_traffic);
+    let one = |direction| builder.one_way(direction).section(direction, jurisdiction.side());
     match facts.traffic() {
         Oneway::Forward => [one(Direction::Forward), NO_SECTION],
         Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
         Oneway::No if facts.section.is(Mark::Reversible) => [one(Direction::Forward), one(Direction::Backward)],
         Oneway::No => {
             let layout = builder.two_way();
-            [Direction::Forward, Direction::Backward]
-                .map(|direction| layout.section(direction, jurisdiction.left_hand_traffic))
+            [Direction::Forward, Direction::Backward].map(|direction| layout.section(direction, jurisdiction.side()))
         }
     }
 }
@@ -87,7 +86,7 @@ pub(super) struct Builder<'a> {
     pub(super) lane_m: f32,
     /// Assumed carriageway of a one-lane ring or ramp, metres; wider than a lane of its class.
     pub(super) single_m: Option<f32>,
-    pub(super) left_hand_traffic: bool,
+    pub(super) side: TrafficSide,
     pub(super) kerb_rule: KerbRule,
 }
 
@@ -157,7 +156,7 @@ impl Builder<'_> {
                 Some(direction) if !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M => {
                     let part = |width_m| lane.with_share(width_m);
                     let (at_kerb, rest) = (part(WIDEST_UNTAGGED_LANE_M), part(each_m - WIDEST_UNTAGGED_LANE_M));
-                    if kerb_on_the_left_of_the_way(direction, self.left_hand_traffic) {
+                    if kerb_on_the_left_of_the_way(direction, self.side) {
                         out.extend([at_kerb, rest]);
                     } else {
                         out.extend([rest, at_kerb]);

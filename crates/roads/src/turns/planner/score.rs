@@ -350,7 +350,7 @@ mod tests {
             for _ in 0..18 {
                 let heading = [angle.cos(), angle.sin()];
                 found_m = found_m.min(side.go_on(&mut field, rear, heading, 8.0, found_m));
-                whole_m = room_along(&mut field, (rear, heading), [0.0, 8.0], SIDE_STEP_M, whole_m);
+                whole_m = room_along(&mut field, rear, heading, [0.0, 8.0], SIDE_STEP_M, whole_m);
                 for i in 0..=400 {
                     truth_m = truth_m.min(field.distance_m(along(rear, heading, 0.02 * f64::from(i))));
                 }

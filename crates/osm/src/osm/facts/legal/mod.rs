@@ -28,6 +28,7 @@ mod tests;
 use super::{Direction, Legal, Limit, Permission, told};
 use crate::vehicle::{Member, Vehicle};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use named::AccessOf;
 use property::{Property, SLACK};
 use set::Group;
 use subject::Subject;
@@ -171,17 +172,17 @@ impl Legal {
         let lorry = vehicle.class().is_none_or(|class| class.member("hgv") != Member::No);
         let hgv = if lorry { self.hgv } else { Permission::Yes };
         let permission = self.motor_vehicle.max(hgv);
-        let closed = |reason, lorries| Judgement {
+        let closed = |reason, of| Judgement {
             verdict: Some(Verdict::Forbidden(reason)),
             permission: Permission::No,
-            rule: self.tag_of_access(lorries, Permission::No),
+            rule: self.tag_of_access(of, Permission::No),
             ..Judgement::default()
         };
         if self.motor_vehicle == Permission::No {
-            return closed(ForbiddenReason::Access, false);
+            return closed(ForbiddenReason::Access, AccessOf::MotorVehicles);
         }
         if hgv == Permission::No {
-            return closed(ForbiddenReason::Hgv, true);
+            return closed(ForbiddenReason::Hgv, AccessOf::Lorries);
         }
         let mut unreadable = None;
         for (limit, property, _) in plain_limits(self) {
@@ -206,9 +207,12 @@ impl Legal {
             }
         }
         let restricted = (permission == Permission::Restricted).then(|| {
-            let lorries = hgv == Permission::Restricted;
-            let keys = if lorries { "hgv" } else { "access, vehicle or motor_vehicle" };
-            self.tag_of_access(lorries, permission).unwrap_or_else(|| keys.to_owned())
+            let (of, keys) = if hgv == Permission::Restricted {
+                (AccessOf::Lorries, "hgv")
+            } else {
+                (AccessOf::MotorVehicles, "access, vehicle or motor_vehicle")
+            };
+            self.tag_of_access(of, permission).unwrap_or_else(|| keys.to_owned())
         });
         unreadable.unwrap_or(Judgement { permission, destination: restricted, ..Judgement::default() })
     }

@@ -10,6 +10,13 @@ use crate::osm::facts::{Limit, Permission, told};
 const HGV: [&str; 1] = ["hgv"];
 const MOTOR_VEHICLE: [&str; 3] = ["motor_vehicle", "vehicle", "access"];
 
+/// The vehicles whose access is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AccessOf {
+    Lorries,
+    MotorVehicles,
+}
+
 impl RuleTags<'_> {
     /// The tags behind the plain limits and access of a direction, `key=value` lines in order. `None` where nothing is limited.
     pub(in crate::osm::facts) fn told(&self, side: Direction) -> Option<Box<str>> {
@@ -67,14 +74,17 @@ impl Legal {
         tags().find(says).or_else(|| tags().find(restrictor)).map(|(key, value)| joined(key, value))
     }
 
-    /// The tag behind the permission of lorries, or of all motor vehicles, as `key=value`. `None` if it is not known.
-    pub(super) fn tag_of_access(&self, lorries: bool, permitted: Permission) -> Option<String> {
-        let keys = if lorries { &HGV[..] } else { &MOTOR_VEHICLE };
+    /// The tag behind a permission, as `key=value`. `None` if it is not known.
+    pub(super) fn tag_of_access(&self, of: AccessOf, permitted: Permission) -> Option<String> {
+        let keys = match of {
+            AccessOf::Lorries => &HGV[..],
+            AccessOf::MotorVehicles => &MOTOR_VEHICLE,
+        };
         let says = |wanted: &str| {
-            let of = |(key, value): &(&str, &str)| {
+            let is = |(key, value): &(&str, &str)| {
                 key.split(':').next() == Some(wanted) && permission(value, &mut Notes::default()) == permitted
             };
-            told::tags(self.tags.as_deref()).find(of)
+            told::tags(self.tags.as_deref()).find(is)
         };
         keys.iter().find_map(|key| says(key)).map(|(key, value)| joined(key, value))
     }
