@@ -32,6 +32,13 @@ pub(super) struct Failing {
     beside: bool,
 }
 
+impl Failing {
+    /// Whether so much room is missing that one thing alone does not help.
+    pub(super) fn lacks_much(&self) -> bool {
+        !self.folds && self.missing_m >= MUCH_M
+    }
+}
+
 /// The least that is added to a width, metres. A wider road has another middle, so a little more may not help at once: later rounds add
 /// more.
 fn wider_m(round: usize) -> f64 {

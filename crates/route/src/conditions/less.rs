@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::failing::{Failing, failing};
 use super::fit::{Fitter, Fitting, network_of};
 use super::suppositions::Suppositions;
 use super::{Condition, ConditionAt};
@@ -84,8 +85,11 @@ impl Fitter {
             if !same {
                 fitting.choices.clear();
             }
-            if self.look(fitting, stop)?.is_ok_and(|looked| looked.safe()) {
-                return Ok(true);
+            match self.look(fitting, stop)? {
+                Ok(looked) if looked.safe() => return Ok(true),
+                // No other path makes up for so much.
+                Ok(looked) if failing(&looked).iter().any(Failing::lacks_much) => break,
+                _ => {}
             }
         }
         (fitting.supposed, fitting.choices) = (before, choices);

@@ -1,7 +1,8 @@
 //! Sections of a way: stretches that are fitted one by one.
 //!
-//! A vehicle that goes straight on for long forgets the turn before. So the middle of a long leg between two turns parts a way. What each
-//! section needs is found on the section alone, and the certificate over the whole way decides.
+//! A vehicle that goes straight on for long forgets the turn before. So a way is parted in long legs between two turns. What each section
+//! needs is found on the section alone, and the certificate over the whole way decides. A section with turns is certified many times, so it
+//! is kept short.
 
 use std::ops::Range;
 
@@ -29,35 +30,73 @@ impl Section {
     }
 }
 
-/// The sections of a way in driving order. A leg of at least `long_m` metres between two turns is parted in its middle.
+/// The sections of a way in driving order. A turn keeps `long_m` metres of road before and after it, or half of what lies between it and the
+/// next turn. A road that is longer is a section without turns.
 pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, long_m: f64) -> Vec<Section> {
     let drive = way.drive;
+    let turns = joint::turns(movements, drive);
+    let last = drive.edges.len() - 1;
     let mut sections = Vec::new();
     let (mut first, mut start) = (0, way.start);
-    for turns in joint::turns(movements, drive).windows(2) {
-        let leg = turns[0][1]..turns[1][0] + 1;
-        let Some((at, share)) = middle(network, &drive.edges, leg, long_m) else { continue };
-        sections.push(section(drive, first..at + 1, start, share));
-        (first, start) = (at, share);
+    for leg in 0..=turns.len() {
+        let before = leg.checked_sub(1).map(|turn| turns[turn][1]);
+        let after = turns.get(leg).map(|turn| turn[0]);
+        let edges = before.unwrap_or(0)..=after.unwrap_or(last);
+        let pieces: Vec<Piece> = edges.map(|at| Piece::of(network, way, at)).collect();
+        let whole_m = pieces.iter().map(Piece::length_m).sum();
+        for cut_m in cuts_m(whole_m, long_m, before.is_some(), after.is_some()) {
+            let Some((at, share)) = place(&pieces, cut_m) else { continue };
+            sections.push(section(drive, first..at + 1, start, share));
+            (first, start) = (at, share);
+        }
     }
     sections.push(section(drive, first..drive.edges.len(), start, way.end));
     sections
 }
 
-/// The edge in the middle of a leg that is long enough, and the share of the edge before the middle.
-fn middle(network: &Network, edges: &[u32], leg: Range<usize>, long_m: f64) -> Option<(usize, f64)> {
-    let length_m = |at: usize| network.edges.get(edges[at] as usize).map_or(0.0, |edge| network.length_m(edge));
-    let whole_m: f64 = leg.clone().map(length_m).sum();
-    if whole_m < long_m {
-        return None;
+/// Where a leg is parted, in metres from its beginning. `before` and `after` say whether a turn is there.
+fn cuts_m(whole_m: f64, long_m: f64, before: bool, after: bool) -> Vec<f64> {
+    match (before, after) {
+        (true, true) if whole_m >= 3.0 * long_m => vec![long_m, whole_m - long_m],
+        (true, true) if whole_m >= long_m => vec![0.5 * whole_m],
+        (true, false) if whole_m >= 2.0 * long_m => vec![long_m],
+        (false, true) if whole_m >= 2.0 * long_m => vec![whole_m - long_m],
+        _ => Vec::new(),
     }
-    let mut before_m = 0.5 * whole_m;
-    for at in leg {
-        let own_m = length_m(at);
-        if own_m >= before_m {
-            return Some((at, before_m / own_m.max(1e-9)));
+}
+
+/// The part of an edge that a way drives.
+struct Piece {
+    /// The index of the edge in the way.
+    at: usize,
+    /// The shares of the edge at which the part begins and ends.
+    shares: [f64; 2],
+    /// The length of the whole edge, metres.
+    edge_m: f64,
+}
+
+impl Piece {
+    fn of(network: &Network, way: &Way<'_>, at: usize) -> Self {
+        let edges = &way.drive.edges;
+        let start = if at == 0 { way.start } else { 0.0 };
+        let end = if at + 1 == edges.len() { way.end } else { 1.0 };
+        let edge_m = network.edges.get(edges[at] as usize).map_or(0.0, |edge| network.length_m(edge));
+        Self { at, shares: [start, end], edge_m }
+    }
+
+    fn length_m(&self) -> f64 {
+        (self.shares[1] - self.shares[0]).max(0.0) * self.edge_m
+    }
+}
+
+/// The edge at a distance from the beginning of a leg, and the share of the edge before that place.
+fn place(pieces: &[Piece], mut from_start_m: f64) -> Option<(usize, f64)> {
+    for piece in pieces {
+        let own_m = piece.length_m();
+        if own_m >= from_start_m {
+            return Some((piece.at, piece.shares[0] + from_start_m / piece.edge_m.max(1e-9)));
         }
-        before_m -= own_m;
+        from_start_m -= own_m;
     }
     None
 }
@@ -66,4 +105,32 @@ fn section(drive: &Drive, range: Range<usize>, start: f64, end: f64) -> Section 
     let over = drive.over.iter().filter(|arcs| range.start < arcs.start && arcs.end < range.end);
     let over = over.map(|arcs| arcs.start - range.start..arcs.end - range.start).collect();
     Section { drive: Drive { edges: drive.edges[range.clone()].to_vec(), over }, first: range.start, start, end }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_keeps_enough_road_and_no_more() {
+        // Short legs are not parted, and those of middle length once.
+        assert_eq!(cuts_m(99.0, 100.0, true, true), [0.0; 0]);
+        assert_eq!(cuts_m(240.0, 100.0, true, true), [120.0]);
+        assert_eq!(cuts_m(9000.0, 100.0, true, true), [100.0, 8900.0]);
+        // Before the first turn and after the last one.
+        assert_eq!(cuts_m(9000.0, 100.0, false, true), [8900.0]);
+        assert_eq!(cuts_m(9000.0, 100.0, true, false), [100.0]);
+        assert_eq!(cuts_m(150.0, 100.0, true, false), [0.0; 0]);
+        assert_eq!(cuts_m(9000.0, 100.0, false, false), [0.0; 0]);
+    }
+
+    #[test]
+    fn a_place_counts_only_what_is_driven() {
+        let piece = |at, shares, edge_m| Piece { at, shares, edge_m };
+        let pieces = [piece(0, [0.5, 1.0], 200.0), piece(1, [0.0, 1.0], 300.0), piece(2, [0.0, 0.25], 400.0)];
+        assert_eq!(place(&pieces, 20.0), Some((0, 0.6)));
+        assert_eq!(place(&pieces, 250.0), Some((1, 0.5)));
+        assert_eq!(place(&pieces, 450.0), Some((2, 0.125)));
+        assert_eq!(place(&pieces, 501.0), None);
+    }
 }
