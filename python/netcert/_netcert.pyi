@@ -7,6 +7,8 @@ from typing import Any, TypeVar, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .filters import EdgeFilters, TurnFilters
+
 __all__ = [
     "Answer",
     "Catalogue",
@@ -303,27 +305,8 @@ class RegionFile:
     def sets(self) -> list[dict[str, Any]]: ...
     def usual_corridor(self) -> str: ...
     def vehicle(self, vehicle_id: str) -> Vehicle: ...
-    def edges(
-        self,
-        vehicle_id: str,
-        corridor: str | None,
-        bbox: Sequence[float] | None,
-        verdict: str | None,
-        min_rsc_m: float | None,
-        needs_at_most_m: float | None,
-        min_width_source: str | None,
-        edge_id: int | None,
-    ) -> RowBatches: ...
-    def turns(
-        self,
-        vehicle_id: str,
-        corridor: str | None,
-        bbox: Sequence[float] | None,
-        verdict: str | None,
-        min_rsc_m: float | None,
-        needs_at_most_m: float | None,
-        turn_id: int | None,
-    ) -> RowBatches: ...
+    def edges(self, vehicle_id: str, corridor: str | None, filters: EdgeFilters) -> RowBatches: ...
+    def turns(self, vehicle_id: str, corridor: str | None, filters: TurnFilters) -> RowBatches: ...
     def explain_edge(self, edge_id: int, vehicle_id: str, corridor: str | None) -> Explanation: ...
     def explain_turn(self, turn_id: int, vehicle_id: str, corridor: str | None) -> Explanation: ...
     def route(

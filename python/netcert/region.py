@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ._netcert import Explanation, RegionFile, Vehicle, Verification
+from .filters import Corridor, EdgeFilters, TurnFilters, Verdict, WidthSource
 from .routes import Routes
 from .table import Table
 
-Corridor = Literal["lane", "direction", "carriageway"]
-Verdict = Literal["safe", "unsafe", "forbidden", "unknown"]
-WidthSource = Literal["assumed", "from_lanes", "estimated", "tagged", "surveyed"]
 Place = tuple[float, float]
 
 
@@ -87,10 +85,15 @@ class Region:
 
         Raises NotFound if the vehicle is not certified under this policy.
         """
-        rows = self._file.edges(
-            vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, min_width_source, edge_id
+        filters = EdgeFilters(
+            bbox=bbox,
+            verdict=verdict,
+            min_rsc_m=min_rsc_m,
+            needs_at_most_m=needs_at_most_m,
+            min_width_source=min_width_source,
+            edge_id=edge_id,
         )
-        return Table(rows)
+        return Table(self._file.edges(vehicle_id, corridor, filters))
 
     def turns(
         self,
@@ -107,7 +110,10 @@ class Region:
 
         Raises NotFound if the vehicle's turns are not certified under this policy.
         """
-        return Table(self._file.turns(vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, turn_id))
+        filters = TurnFilters(
+            bbox=bbox, verdict=verdict, min_rsc_m=min_rsc_m, needs_at_most_m=needs_at_most_m, turn_id=turn_id
+        )
+        return Table(self._file.turns(vehicle_id, corridor, filters))
 
     def explain_edge(self, edge_id: int, vehicle_id: str, *, corridor: Corridor | None = None) -> Explanation:
         """Why an edge is safe or unsafe: what limits, where, and what would do. The certificate is computed again.

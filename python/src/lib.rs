@@ -13,6 +13,7 @@
 //! | `report` | what the independent checker says of a certificate file |
 //! | `rows` | rows of edges and turns as Arrow |
 //! | `region` | a database |
+//! | `filters` | which of its rows a table has |
 //! | `explanation` | why an edge or turn is safe or unsafe |
 //! | `answer` | routes, or what blocks them |
 //! | `tasks` | parts of a region on machines of a cluster |
@@ -25,6 +26,7 @@ mod certificate;
 mod corridor;
 mod error;
 mod explanation;
+mod filters;
 mod many;
 mod region;
 mod report;

@@ -57,7 +57,7 @@ pub(crate) fn certify_many(
         stop.check().map(|()| planned)
     })?;
     let planned = planned.map_err(|_| error::stopped())?;
-    let mut columns = Columns::new(&COLUMNS, false);
+    let mut columns = Columns::new(&COLUMNS);
     for ((number, case), planned) in cases.iter().enumerate().zip(planned.iter().flatten()) {
         let Some(result) = planned.spans.first() else { continue };
         let (verdict, reason) = verdict_words(result.verdict());

@@ -4,19 +4,19 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use netcert::osm::facts::{Policy, WidthSource};
+use netcert::osm::facts::Policy;
 use netcert::region::Region;
 use netcert::route::{Measure, Planner, Position, Question};
-use netcert::rows::{Bounds, EdgeRow, TurnRow};
-use netcert::store::{Area, QueryOptions, TurnQuery};
+use netcert::rows::{EdgeRow, TurnRow};
 use netcert::verify::{Request, verify};
-use netcert::words::{Named, VerdictKind};
+use netcert::words::Named;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answer::Answer;
 use crate::explanation::Explanation;
+use crate::filters::{Filters, bounds};
 use crate::rows::{Columns, RowBatches, of_arrow};
 use crate::vehicle::Vehicle;
 use crate::verification::Verification;
@@ -32,7 +32,15 @@ pub(crate) struct RegionFile {
     #[pyo3(get)]
     path: PathBuf,
     region: Mutex<Region>,
-    planners: Mutex<HashMap<(String, &'static str, bool), Planner>>,
+    planners: Mutex<HashMap<PlannerKey, Planner>>,
+}
+
+/// What a planner is for.
+#[derive(PartialEq, Eq, Hash)]
+struct PlannerKey {
+    vehicle_id: String,
+    policy: Policy,
+    measure: Measure,
 }
 
 impl RegionFile {
@@ -57,23 +65,7 @@ pub(crate) fn named<T: Named>(argument: &str, word: &str) -> PyResult<T> {
     })
 }
 
-fn area(bbox: Option<[f64; 4]>) -> PyResult<Option<Area>> {
-    Ok(bounds(bbox)?.map(Area::Bounds))
-}
-
-/// A box from `(west, south, east, north)`. West is greater than east in a box over the 180th meridian.
-fn bounds(bbox: Option<[f64; 4]>) -> PyResult<Option<Bounds>> {
-    let Some([west, south, east, north]) = bbox else { return Ok(None) };
-    let (lon, lat) = (|x: f64| (-180.0..=180.0).contains(&x), |y: f64| (-90.0..=90.0).contains(&y));
-    if !(lon(west) && lon(east) && lat(south) && lat(north) && south <= north) {
-        return Err(PyValueError::new_err(format!(
-            "bbox: ({west}, {south}, {east}, {north}); expected degrees: (west, south, east, north)"
-        )));
-    }
-    Ok(Some(Bounds { west, south, east, north }))
-}
-
-fn position((lon, lat): (f64, f64)) -> PyResult<Position> {
+fn position(lon: f64, lat: f64) -> PyResult<Position> {
     if (-180.0..=180.0).contains(&lon) && (-90.0..=90.0).contains(&lat) {
         return Ok(Position { lon, lat });
     }
@@ -117,33 +109,18 @@ impl RegionFile {
         found.map(Vehicle::of).ok_or_else(missing)
     }
 
-    #[pyo3(signature = (vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, min_width_source, edge_id))]
-    #[allow(clippy::too_many_arguments)] // all are named in `Region.edges`
+    /// Edges as rows. `filters` are `EdgeFilters` of `netcert/filters.py`.
     fn edges(
         &self,
         py: Python<'_>,
         vehicle_id: &str,
         corridor: Option<&str>,
-        bbox: Option<[f64; 4]>,
-        verdict: Option<&str>,
-        min_rsc_m: Option<f64>,
-        needs_at_most_m: Option<f64>,
-        min_width_source: Option<&str>,
-        edge_id: Option<i64>,
+        filters: &Bound<'_, PyDict>,
     ) -> PyResult<RowBatches> {
-        let options = QueryOptions {
-            area: area(bbox)?,
-            edge_id,
-            verdict: verdict.map(|word| named::<VerdictKind>("verdict", word)).transpose()?,
-            min_rsc_m,
-            needs_at_most_m,
-            min_width_source: min_width_source
-                .map(|word| named::<WidthSource>("min_width_source", word))
-                .transpose()?,
-            ..QueryOptions::new(vehicle_id, self.policy(py, corridor)?)
-        };
+        let filters = Filters::read(filters)?;
+        let options = filters.of_edges(vehicle_id, self.policy(py, corridor)?);
         work::run(py, |stop| {
-            let mut columns = Columns::new(&EdgeRow::COLUMNS, true);
+            let mut columns = Columns::with_lines(&EdgeRow::COLUMNS);
             let mut region = self.region();
             for row in region.edges(&options).map_err(|e| error::of_region(&e))? {
                 stop.check().map_err(|_| error::stopped())?;
@@ -154,29 +131,18 @@ impl RegionFile {
         })?
     }
 
-    #[pyo3(signature = (vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, turn_id))]
-    #[allow(clippy::too_many_arguments)] // all are named in `Region.turns`
+    /// Turns as rows. `filters` are `TurnFilters` of `netcert/filters.py`.
     fn turns(
         &self,
         py: Python<'_>,
         vehicle_id: &str,
         corridor: Option<&str>,
-        bbox: Option<[f64; 4]>,
-        verdict: Option<&str>,
-        min_rsc_m: Option<f64>,
-        needs_at_most_m: Option<f64>,
-        turn_id: Option<i64>,
+        filters: &Bound<'_, PyDict>,
     ) -> PyResult<RowBatches> {
-        let options = TurnQuery {
-            area: area(bbox)?,
-            turn_id,
-            verdict: verdict.map(|word| named::<VerdictKind>("verdict", word)).transpose()?,
-            min_rsc_m,
-            needs_at_most_m,
-            ..TurnQuery::new(vehicle_id, self.policy(py, corridor)?)
-        };
+        let filters = Filters::read(filters)?;
+        let options = filters.of_turns(vehicle_id, self.policy(py, corridor)?);
         work::run(py, |_| {
-            let mut columns = Columns::new(&TurnRow::COLUMNS, true);
+            let mut columns = Columns::with_lines(&TurnRow::COLUMNS);
             for row in self.region().turns(&options).map_err(|e| error::of_region(&e))? {
                 columns.push(row.cells(&options.vehicle, options.policy), &row.line).map_err(|e| of_arrow(&e))?;
             }
@@ -184,7 +150,6 @@ impl RegionFile {
         })?
     }
 
-    #[pyo3(signature = (edge_id, vehicle_id, corridor))]
     fn explain_edge(
         &self,
         py: Python<'_>,
@@ -197,7 +162,6 @@ impl RegionFile {
         made.map(Explanation::of_edge).map_err(|e| error::of_region(&e))
     }
 
-    #[pyo3(signature = (turn_id, vehicle_id, corridor))]
     fn explain_turn(
         &self,
         py: Python<'_>,
@@ -210,7 +174,6 @@ impl RegionFile {
         made.map(Explanation::of_turn).map_err(|e| error::of_region(&e))
     }
 
-    #[pyo3(signature = (vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions))]
     #[allow(clippy::too_many_arguments)] // all are named in `Region.route`
     fn route(
         &self,
@@ -225,25 +188,22 @@ impl RegionFile {
         conditions: bool,
     ) -> PyResult<Answer> {
         let policy = self.policy(py, corridor)?;
-        let distance = match least {
-            "time" => false,
-            "distance" => true,
+        let measure = match least {
+            "time" => Measure::Time,
+            "distance" => Measure::Distance,
             other => return Err(PyValueError::new_err(format!("least: {other:?}; expected \"time\" or \"distance\""))),
         };
         if !(0.0..=10_000.0).contains(&snap_m) {
             return Err(PyValueError::new_err(format!("snap_m: {snap_m}; expected 0 to 10000 metres")));
         }
-        let places = places.into_iter().map(position).collect::<PyResult<Vec<_>>>()?;
+        let places = places.into_iter().map(|(lon, lat)| position(lon, lat)).collect::<PyResult<Vec<_>>>()?;
         let question = Question { places, snap_m, alternatives, tries };
         work::run(py, |stop| {
-            let key = (vehicle_id.to_owned(), policy.name(), distance);
+            let key = PlannerKey { vehicle_id: vehicle_id.to_owned(), policy, measure };
             let mut planners = self.planners.lock().unwrap_or_else(PoisonError::into_inner);
             let mut planner = match planners.remove(&key) {
                 Some(planner) => planner,
-                None => {
-                    let measure = if distance { Measure::Distance } else { Measure::Time };
-                    self.region().planner(vehicle_id, policy, measure).map_err(|e| error::of_region(&e))?
-                }
+                None => self.region().planner(vehicle_id, policy, measure).map_err(|e| error::of_region(&e))?,
             };
             let answer =
                 if conditions { planner.best_answer(&question, stop, || ()) } else { planner.answer(&question, stop) };

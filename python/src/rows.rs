@@ -113,22 +113,28 @@ fn geometry() -> Field {
 }
 
 impl Columns {
-    /// A table with these columns, and a column of lines where `lines` says so.
-    pub(crate) fn new(columns: &[Column], lines: bool) -> Self {
+    /// A table with these columns.
+    pub(crate) fn new(columns: &[Column]) -> Self {
         let field = |(name, kind): &Column| match kind {
             Kind::Integer => Field::new(*name, DataType::Int64, true),
             Kind::Real => Field::new(*name, DataType::Float64, true),
             Kind::Text => Field::new(*name, DataType::Utf8, true),
             Kind::Flag => Field::new(*name, DataType::Boolean, false),
         };
-        let fields: Vec<Field> = columns.iter().map(field).chain(lines.then(geometry)).collect();
         Self {
-            schema: Arc::new(Schema::new(fields)),
+            schema: Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>())),
             values: columns.iter().map(|column| Values::new(column.1)).collect(),
-            lines: lines.then(Lines::new),
+            lines: None,
             rows: 0,
             batches: Vec::new(),
         }
+    }
+
+    /// A table with these columns, and the column `geometry` after them.
+    pub(crate) fn with_lines(columns: &[Column]) -> Self {
+        let table = Self::new(columns);
+        let fields = table.schema.fields().iter().cloned().chain([Arc::new(geometry())]);
+        Self { schema: Arc::new(Schema::new(fields.collect::<Vec<_>>())), lines: Some(Lines::new()), ..table }
     }
 
     /// Adds a row: one cell for each column, and a line if the table has lines.

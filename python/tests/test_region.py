@@ -153,6 +153,16 @@ def test_what_a_region_lacks_is_named(demo, tmp_path):
             netcert.open(path)
 
 
+@pytest.mark.parametrize(
+    ("name", "wrong"), [("min_rsc_m", "wide"), ("bbox", (0, 9, 1)), ("bbox", 5), ("edge_id", 1.5), ("edge_id", 2**70), ("verdict", 3)]
+)
+def test_a_filter_of_a_wrong_kind_is_named(demo, name, wrong):
+    with pytest.raises((TypeError, ValueError, OverflowError)) as raised:
+        demo.edges(TRUCK, **{name: wrong})
+    # Python 3.10 has no notes.
+    assert getattr(raised.value, "__notes__", [f"while processing '{name}'"]) == [f"while processing '{name}'"]
+
+
 def test_an_explanation_says_what_the_program_says(demo, demo_path, run):
     edge_id = int(demo.edges(TRUCK, verdict="unsafe").to_pandas().edge_id.iloc[0])
     why = demo.explain_edge(edge_id, TRUCK)

@@ -10,7 +10,7 @@ use crate::osm::facts::RoadClass;
 use crate::words::Named as _;
 
 /// What a search minimises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Measure {
     /// Time, milliseconds.
     #[default]
