@@ -228,4 +228,4 @@ class _Turns(_Work):
     def done(self, task: dict[str, Any]) -> dict[str, Any]:
         around = task["around"] or []
         incomplete = task["incomplete"] is not False
-        return {"work": _netcert.certify_turns(self.job, task["network"], around, incomplete)}
+        return {"work": _netcert.certify_turns(self.job, task["network"], around, incomplete=incomplete)}

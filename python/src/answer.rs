@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use netcert::certificate::Origin;
 use netcert::corridor::FileCorridor;
-use netcert::route::{self as library, Driver, Roads, Route};
+use netcert::route::{self as library, Conditional, Driver, Roads, Route};
 use netcert::{certificate, picture};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -26,17 +26,24 @@ impl Answer {
     }
 
     /// A route by its number: the certified ones, then the one under conditions.
-    fn route(&self, number: usize) -> PyResult<(&Route, bool)> {
-        let certified = self.answer.routes.iter().map(|route| (route, false));
-        let conditional = self.answer.conditional.as_ref().map(|conditional| (&conditional.route, true));
+    fn route(&self, number: usize) -> PyResult<Numbered<'_>> {
+        let certified = self.answer.routes.iter().map(|route| Numbered { route, under: None });
+        let conditional =
+            self.answer.conditional.as_ref().map(|known| Numbered { route: &known.route, under: Some(known) });
         let found = certified.chain(conditional).nth(number);
         found.ok_or_else(|| PyIndexError::new_err(format!("there is no route {number}")))
     }
 
-    fn conditions(&self, conditional: bool) -> Vec<serde_json::Value> {
-        let known = self.answer.conditional.as_ref().filter(|_| conditional);
-        known.map_or_else(Vec::new, |known| library::condition_members(&self.roads.network, known))
+    fn conditions(&self, numbered: &Numbered<'_>) -> Vec<serde_json::Value> {
+        numbered.under.map_or_else(Vec::new, |known| library::condition_members(&self.roads.network, known))
     }
+}
+
+/// A route of the answer.
+struct Numbered<'a> {
+    route: &'a Route,
+    /// The conditions that it holds under. `None` if it is certified.
+    under: Option<&'a Conditional>,
 }
 
 #[pymethods]
@@ -54,8 +61,9 @@ impl Answer {
 
     /// The certificate file of a route, as text.
     fn certificate(&self, py: Python<'_>, number: usize) -> PyResult<String> {
-        let (route, conditional) = self.route(number)?;
-        let conditions = self.conditions(conditional);
+        let numbered = self.route(number)?;
+        let conditions = self.conditions(&numbered);
+        let route = numbered.route;
         let given = FileCorridor { corridor: route.path.corridor.clone(), frame: Some(route.path.frame) };
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
         let text = work::run(py, |_| {
@@ -66,8 +74,9 @@ impl Answer {
 
     /// A picture of a route, as SVG.
     fn svg(&self, py: Python<'_>, number: usize) -> PyResult<String> {
-        let (route, conditional) = self.route(number)?;
-        let conditions = self.conditions(conditional).len();
+        let numbered = self.route(number)?;
+        let conditions = self.conditions(&numbered).len();
+        let route = numbered.route;
         let (network, vehicle) = (&self.roads.network, &self.driver.model.vehicle);
         work::run(py, |_| picture::route(network, vehicle, route, conditions))
     }
