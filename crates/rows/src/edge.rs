@@ -1,28 +1,21 @@
 //! Rows of edges: with certificates, with all facts from the map, and with the facts that a permit depends on.
 
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
+use crate::osm::facts::{Oneway, Permission, Policy, WidthSource};
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
+use super::key::{EdgeKey, RoadName};
 
 /// One edge with its certificate, in the units of the view `certificate`.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge`
 pub struct EdgeRow {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
+    pub edge: EdgeKey,
+    pub road: RoadName,
     pub length_m: f64,
     /// The width under the query's policy.
     pub width_m: Option<f64>,
@@ -77,14 +70,14 @@ impl EdgeRow {
         let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             self.certificate.cells();
         [
-            Cell::Integer(Some(self.edge_id)),
-            Cell::Integer(Some(self.way_id)),
-            Cell::Integer(Some(self.from_node)),
-            Cell::Integer(Some(self.to_node)),
-            Cell::Text(Some(self.direction.name())),
-            Cell::Text(Some(&self.highway)),
-            Cell::Text(self.name.as_deref()),
-            Cell::Text(self.reference.as_deref()),
+            Cell::Integer(Some(self.edge.id)),
+            Cell::Integer(Some(self.edge.way_id)),
+            Cell::Integer(Some(self.edge.from_node)),
+            Cell::Integer(Some(self.edge.to_node)),
+            Cell::Text(Some(self.edge.direction.name())),
+            Cell::Text(Some(&self.road.highway)),
+            Cell::Text(self.road.name.as_deref()),
+            Cell::Text(self.road.reference.as_deref()),
             Cell::Real(Some(self.length_m)),
             Cell::Real(self.width_m),
             Cell::Text(self.width_source.map(WidthSource::name)),
@@ -110,17 +103,9 @@ impl EdgeRow {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge`
 pub struct EdgeFacts {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
+    pub edge: EdgeKey,
     pub oneway: Oneway,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
+    pub road: RoadName,
     pub lanes: Option<u8>,
     pub maxspeed_kmh: Option<u8>,
     pub length_m: f64,
@@ -148,16 +133,11 @@ pub struct EdgeFacts {
     pub line: Vec<LonLat>,
 }
 
-/// The facts that a permit of an edge depends on, and the edge's place on its way.
+/// The facts that a permit of an edge depends on, and the edge's shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge` and `certificate`
 pub struct EdgeStep {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
+    pub edge: EdgeKey,
     /// Index of the shape's start in `Network::shapes`. Both directions share the shape.
     pub shape_start: u32,
     /// Number of positions in the shape.

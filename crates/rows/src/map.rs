@@ -2,23 +2,19 @@
 
 use std::borrow::Cow;
 
-use crate::osm::facts::{BackdropKind, Direction, Oneway, RoadClass, WidthSource};
+use crate::osm::facts::{BackdropKind, Oneway, RoadClass, WidthSource};
 use crate::osm::{BackdropShape, LonLat};
 use crate::verdict::Verdict;
+
+use super::key::{EdgeKey, RoadName, TurnKey};
 
 /// An edge as a map draws it. Its texts may be those of a network in memory.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge` and `certificate`
 pub struct MapEdge<'r> {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub direction: Direction,
+    pub edge: EdgeKey,
     pub oneway: Oneway,
-    pub highway: Cow<'r, str>,
-    pub name: Option<Cow<'r, str>>,
-    pub reference: Option<Cow<'r, str>>,
+    pub road: RoadName<Cow<'r, str>>,
     pub numbers: MapNumbers,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
@@ -58,14 +54,7 @@ pub struct MapBackdrop {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
 pub struct MapTurn {
-    /// Index into the network's turns.
-    pub turn: u32,
-    pub turn_id: i64,
-    pub from_edge: i64,
-    pub to_edge: i64,
-    /// Names or refs of the two roads.
-    pub from_name: Option<String>,
-    pub to_name: Option<String>,
+    pub turn: TurnKey,
     pub kind: String,
     pub angle_deg: f64,
     pub kerb_radius_m: Option<f64>,

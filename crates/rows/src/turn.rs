@@ -8,16 +8,13 @@ use crate::words::Named as _;
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
+use super::key::TurnKey;
 
 /// One turn with its certificate, in the units of the view `turn_certificate`.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
 pub struct TurnRow {
-    /// Index into the network's turns.
-    pub turn: u32,
-    pub turn_id: i64,
-    pub from_edge: i64,
-    pub to_edge: i64,
+    pub turn: TurnKey,
     /// The `edge_id`s of the first and last edge between, if the turn is a passage.
     pub arcs: Option<[i64; 2]>,
     pub via_node: i64,
@@ -27,9 +24,6 @@ pub struct TurnRow {
     pub kerb_radius_m: Option<f64>,
     pub kerb_source: Option<String>,
     pub restriction: Option<String>,
-    /// Names or refs of the two roads.
-    pub from_name: Option<String>,
-    pub to_name: Option<String>,
     /// The certificate of the query's vehicle under the query's policy.
     pub certificate: CertificateRow,
     pub path_no: Option<i64>,
@@ -81,9 +75,9 @@ impl TurnRow {
         let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             self.certificate.cells();
         [
-            Cell::Integer(Some(self.turn_id)),
-            Cell::Integer(Some(self.from_edge)),
-            Cell::Integer(Some(self.to_edge)),
+            Cell::Integer(Some(self.turn.id)),
+            Cell::Integer(Some(self.turn.from_edge)),
+            Cell::Integer(Some(self.turn.to_edge)),
             Cell::Integer(Some(self.via_node)),
             Cell::Text(Some(&self.kind)),
             Cell::Real(Some(self.angle_deg)),
@@ -92,8 +86,8 @@ impl TurnRow {
             Cell::Text(self.restriction.as_deref()),
             Cell::Integer(self.arcs.map(|arcs| arcs[0])),
             Cell::Integer(self.arcs.map(|arcs| arcs[1])),
-            Cell::Text(self.from_name.as_deref()),
-            Cell::Text(self.to_name.as_deref()),
+            Cell::Text(self.turn.from_name.as_deref()),
+            Cell::Text(self.turn.to_name.as_deref()),
             Cell::Text(Some(vehicle)),
             Cell::Text(Some(policy.name())),
             verdict,

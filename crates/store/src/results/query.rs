@@ -19,6 +19,7 @@ use crate::columns::read::{centimetres, line, word, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
 use crate::results::numbers;
+use crate::roads::key::{edge_key, road_name};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -191,15 +192,8 @@ fn statement(
 fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
     let fid: u32 = row.try_get(0)?;
     Ok(EdgeRow {
-        edge: fid.saturating_sub(1),
-        edge_id: row.try_get(1)?,
-        way_id: row.try_get(2)?,
-        from_node: row.try_get(3)?,
-        to_node: row.try_get(4)?,
-        direction: word(row, 5)?,
-        highway: row.try_get(6)?,
-        name: row.try_get(7)?,
-        reference: row.try_get(8)?,
+        edge: edge_key(row, 1)?,
+        road: road_name(row, 6)?,
         length_m: row.try_get(9)?,
         width_m: row.try_get(10)?,
         width_source: word_or_none(row, 11)?,

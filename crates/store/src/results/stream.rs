@@ -15,6 +15,7 @@ use crate::database::streamed::Streamed;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::results::turns::{self, TurnQuery};
+use crate::roads::key::edge_key;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -29,8 +30,8 @@ impl Database {
     pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
         let [_, source] = width_columns(policy);
         let sql = format!(
-            "SELECT c.fid, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), c.verdict_no, \
-             c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+            "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), \
+             c.verdict_no, c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? ORDER BY c.fid"
         );
         Ok(self.streamed(sql, vehicle, policy, edge_step))
@@ -109,19 +110,15 @@ fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
 
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
     let fid: u32 = row.try_get(0)?;
-    let positions = blob::positions_of(row.try_get::<u32, _>(6)? as usize)
+    let positions = blob::positions_of(row.try_get::<u32, _>(7)? as usize)
         .ok_or_else(|| content(format!("edge {fid} has a geometry that is no line")))?;
     Ok(EdgeStep {
-        edge: fid.saturating_sub(1),
-        way_id: row.try_get(1)?,
-        from_node: row.try_get(2)?,
-        to_node: row.try_get(3)?,
-        direction: word(row, 4)?,
-        shape_start: row.try_get(5)?,
+        edge: edge_key(row, 1)?,
+        shape_start: row.try_get(6)?,
         positions,
-        verdict: verdict(row, 7, || format!("edge {fid}"))?,
-        rsc_m: metres(row, 8)?,
-        width_source: word_or_none(row, 9)?,
+        verdict: verdict(row, 8, || format!("edge {fid}"))?,
+        rsc_m: metres(row, 9)?,
+        width_source: word_or_none(row, 10)?,
     })
 }
 

@@ -29,6 +29,7 @@ use crate::results::plans;
 use crate::results::query::{Area, polygons};
 use crate::results::sets::{self, Complete, Fault};
 use crate::roads::junctions;
+use crate::roads::key::turn_key;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -339,10 +340,7 @@ pub(crate) fn statement(options: &TurnQuery) -> String {
 pub(crate) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     let fid: u32 = row.try_get(0)?;
     Ok(TurnRow {
-        turn: fid.saturating_sub(1),
-        turn_id: row.try_get(1)?,
-        from_edge: row.try_get(2)?,
-        to_edge: row.try_get(3)?,
+        turn: turn_key(row, 10)?,
         arcs: row.try_get::<Option<i64>, _>(14)?.zip(row.try_get(15)?).map(|(first, last)| [first, last]),
         via_node: row.try_get(4)?,
         angle_deg: row.try_get(5)?,
@@ -350,8 +348,6 @@ pub(crate) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         kerb_radius_m: row.try_get(7)?,
         kerb_source: row.try_get(8)?,
         restriction: row.try_get(9)?,
-        from_name: row.try_get(10)?,
-        to_name: row.try_get(11)?,
         need_kerb_radius_m: centimetres(row, 16)?,
         need_flare_m: centimetres(row, 17)?,
         certificate: numbers::read(row, 18, || format!("turn {fid}"))?,

@@ -10,6 +10,7 @@ use crate::columns::read::{line, word, word_or_none};
 use crate::database::Database;
 use crate::database::streamed::Streamed;
 use crate::error::StoreError;
+use crate::roads::key::{edge_key, road_name};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -48,16 +49,9 @@ fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
     let limit = |name, unit, column: usize| -> Sql<_> { Ok((name, unit, row.try_get(column)?)) };
     let unreadable: Option<&str> = row.try_get(25)?;
     Ok(EdgeFacts {
-        edge: fid.saturating_sub(1),
-        edge_id: row.try_get(1)?,
-        way_id: row.try_get(2)?,
-        from_node: row.try_get(3)?,
-        to_node: row.try_get(4)?,
-        direction: word(row, 5)?,
+        edge: edge_key(row, 1)?,
         oneway: word(row, 6)?,
-        highway: row.try_get(7)?,
-        name: row.try_get(8)?,
-        reference: row.try_get(9)?,
+        road: road_name(row, 7)?,
         lanes: row.try_get(10)?,
         maxspeed_kmh: row.try_get(31)?,
         length_m: row.try_get(11)?,

@@ -14,6 +14,7 @@ use crate::columns::names::{corridor_no, width_columns};
 use crate::columns::read::{centimetres, line, verdict, word, word_or_none};
 use crate::database::Database;
 use crate::error::{StoreError, content};
+use crate::roads::key::{edge_key, road_name, turn_key};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -88,7 +89,7 @@ impl Database {
         let ([width, source], shared) = (width_columns(set.policy), shared_column(set.policy));
         let mut sql = format!(
             "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, e.edge_id, e.way_id, \
-             e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
+             e.from_node, e.to_node, e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
@@ -106,7 +107,7 @@ impl Database {
         })?;
         // The index has boxes in single precision, and finds some edges that only come near.
         rows.retain(|row| Bounds::around(row.line.iter().copied()).is_some_and(|own| own.touches(bounds)));
-        rows.sort_unstable_by_key(|row| row.edge);
+        rows.sort_unstable_by_key(|row| row.edge.index);
         Ok(rows)
     }
 
@@ -190,16 +191,11 @@ fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
 fn map_edge(row: &SqliteRow) -> Sql<MapEdge<'static>> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapEdge {
-        edge: fid.saturating_sub(1),
         numbers: map_numbers(row)?,
-        edge_id: row.try_get(8)?,
-        way_id: row.try_get(9)?,
-        direction: word(row, 10)?,
-        oneway: word(row, 11)?,
-        highway: row.try_get::<String, _>(12)?.into(),
-        name: row.try_get::<Option<String>, _>(13)?.map(Into::into),
-        reference: row.try_get::<Option<String>, _>(14)?.map(Into::into),
-        line: line(row, 15, || format!("edge {fid}"))?,
+        edge: edge_key(row, 8)?,
+        oneway: word(row, 13)?,
+        road: road_name(row, 14)?.into(),
+        line: line(row, 17, || format!("edge {fid}"))?,
     })
 }
 
@@ -244,19 +240,14 @@ async fn turns(c: &mut SqliteConnection, set: SetKey<'_>, of: TurnsOf) -> Sql<Ve
         TurnsOf::Edge(edge) => query.bind(i64::from(edge) + 1).bind(i64::from(edge) + 1),
     };
     let mut rows = query.fetch_all(c).await?.iter().map(map_turn).collect::<Sql<Vec<_>>>()?;
-    rows.sort_unstable_by_key(|row| row.turn);
+    rows.sort_unstable_by_key(|row| row.turn.index);
     Ok(rows)
 }
 
 fn map_turn(row: &SqliteRow) -> Sql<MapTurn> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapTurn {
-        turn: fid.saturating_sub(1),
-        turn_id: row.try_get(1)?,
-        from_edge: row.try_get(2)?,
-        to_edge: row.try_get(3)?,
-        from_name: row.try_get(4)?,
-        to_name: row.try_get(5)?,
+        turn: turn_key(row, 4)?,
         kind: row.try_get(6)?,
         angle_deg: row.try_get(7)?,
         kerb_radius_m: row.try_get(8)?,

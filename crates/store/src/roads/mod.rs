@@ -4,6 +4,7 @@ pub(crate) mod areas;
 pub(crate) mod backdrop;
 pub(crate) mod facts;
 pub(crate) mod junctions;
+pub(crate) mod key;
 pub(crate) mod map;
 pub(crate) mod map_changes;
 pub(crate) mod network_read;
