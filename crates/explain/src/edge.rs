@@ -10,9 +10,8 @@ use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Road, Stroke, destination_tag};
-use crate::osm::facts::highway;
 use crate::osm::facts::{Oneway, Policy, RuleSet, WidthSource};
-use crate::rows::CertificateRow;
+use crate::rows::{CertificateRow, EdgeKey, RoadName};
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
@@ -32,9 +31,9 @@ pub fn explain_edge(
     stop: &Stop,
 ) -> Result<Option<Explanation>, Stopped> {
     stop.check()?;
-    let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
+    let Some((key, facts)) = EdgeKey::of(network, edge).zip(network.edges.get(edge as usize)) else { return Ok(None) };
     let conflict = Conflict::of(network, facts, &model.vehicle);
-    let road = road_facts(network, facts, settings.policy, &model.vehicle);
+    let road = road_facts(network, key, facts, settings.policy, &model.vehicle);
     let case = Case::of(network, edge, settings);
     stop.check()?;
     let (geometry, unknown) = match &case {
@@ -236,20 +235,13 @@ fn narrow_places(road: &Road, edge: &Edge) -> Vec<String> {
     if of_places.is_empty() { of_road } else { of_places }
 }
 
-fn road_facts(network: &Network, edge: &Edge, policy: Policy, vehicle: &Vehicle) -> RoadFacts {
+fn road_facts(network: &Network, key: EdgeKey, edge: &Edge, policy: Policy, vehicle: &Vehicle) -> RoadFacts {
     let road = network.road(edge);
-    let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
     let section = network.section(edge);
     let width_source = section.strip(policy).map(|strip| strip.source);
     RoadFacts {
-        edge_id: edge.id,
-        way_id: road.way_id,
-        from_node: edge.from_node,
-        to_node: edge.to_node,
-        direction: edge.direction,
-        highway: highway(road.class, road.link),
-        name: text(road.name),
-        reference: text(road.reference),
+        edge: key,
+        road: RoadName::of(network, road).into_owned(),
         title: network.title(edge),
         policy,
         width_source,

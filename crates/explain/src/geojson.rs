@@ -36,7 +36,7 @@ pub enum MapError {
 /// See [`MapError`].
 pub fn edge_geojson(e: &Explanation, stop: &Stop) -> Result<Value, MapError> {
     let Some(road) = &e.road else { return Ok(collection(&answer(e), &[])) };
-    let writer = Writer { e, id: ("edge_id", road.edge_id) };
+    let writer = Writer { e, id: ("edge_id", road.edge.id) };
     let mut header = answer(e);
     header["policy"] = json!(road.policy.name());
     Ok(collection(&header, &writer.features(Drawn::of_edge(e, stop)?.as_ref(), &road.line)?))

@@ -14,23 +14,24 @@ use netcert_base::words::{Named as _, verdict_words};
 pub fn json(e: &Explanation) -> Value {
     let (verdict, reason) = verdict_words(e.verdict);
     let words = words(e);
-    let road = e.road.as_ref().map(|road| {
+    let road = e.road.as_ref().map(|facts| {
+        let (edge, road) = (facts.edge, &facts.road);
         json!({
             // The id is text, because it has 63 bits and JavaScript's numbers hold 53.
-            "edge_id": road.edge_id.to_string(),
-            "way_id": road.way_id,
-            "from_node": road.from_node,
-            "to_node": road.to_node,
-            "direction": road.direction.name(),
+            "edge_id": edge.id.to_string(),
+            "way_id": edge.way_id,
+            "from_node": edge.from_node,
+            "to_node": edge.to_node,
+            "direction": edge.direction.name(),
             "highway": road.highway,
             "name": road.name,
             "ref": road.reference,
-            "title": road.title,
-            "corridor": road.policy.name(),
-            "width_source": road.width_source.map(WidthSource::name),
-            "width_tags": road.width_tags,
-            "narrowed_by": road.narrowed_by,
-            "lane_shared": road.lane_shared,
+            "title": facts.title,
+            "corridor": facts.policy.name(),
+            "width_source": facts.width_source.map(WidthSource::name),
+            "width_tags": facts.width_tags,
+            "narrowed_by": facts.narrowed_by,
+            "lane_shared": facts.lane_shared,
         })
     });
     let conflict = e.conflict.as_ref().map(

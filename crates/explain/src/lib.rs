@@ -62,7 +62,8 @@ pub use words::{Words, words};
 
 use crate::corridor::{Corridor, Frame, Taper};
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Policy, WidthSource};
+use crate::osm::facts::{Policy, WidthSource};
+use crate::rows::{EdgeKey, RoadName};
 use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnsafeReason, Verdict};
@@ -100,17 +101,11 @@ pub struct TurnRoads {
 
 /// The facts of an edge that people read.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // as in `network::Edge` and `network::Road`
 pub struct RoadFacts {
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
-    /// The class of road as in `highway`, with `_link` for links.
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
+    /// The edge.
+    pub edge: EdgeKey,
+    /// What its road is called.
+    pub road: RoadName,
     /// Ref and name, or what the road joins; see [`Network::title`](crate::network::Network::title).
     pub title: String,
     /// The policy of the certificate.

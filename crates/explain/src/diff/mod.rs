@@ -168,12 +168,12 @@ pub fn edges<E>(
 
 /// The way of the next row. A row that cannot be read comes first, so that its error is told.
 fn first_way<E>(rows: &mut Peekable<impl Iterator<Item = Result<EdgeRow, E>>>) -> Option<i64> {
-    rows.peek().map(|row| row.as_ref().map_or(i64::MIN, |row| row.way_id))
+    rows.peek().map(|row| row.as_ref().map_or(i64::MIN, |row| row.edge.way_id))
 }
 
 fn of_way<E>(rows: &mut Peekable<impl Iterator<Item = Result<EdgeRow, E>>>, way: i64) -> Result<Vec<EdgeRow>, E> {
     let mut all = Vec::new();
-    while let Some(row) = rows.next_if(|row| row.as_ref().map_or(true, |row| row.way_id == way)) {
+    while let Some(row) = rows.next_if(|row| row.as_ref().map_or(true, |row| row.edge.way_id == way)) {
         all.push(row?);
     }
     Ok(all)
@@ -182,20 +182,20 @@ fn of_way<E>(rows: &mut Peekable<impl Iterator<Item = Result<EdgeRow, E>>>, way:
 /// The changes on one way.
 fn way_changes(before: Vec<EdgeRow>, after: Vec<EdgeRow>) -> Vec<Changed<EdgeRow>> {
     let two_way = [&before, &after].map(|rows| both_directions(rows));
-    let mut known: BTreeMap<i64, EdgeRow> = before.into_iter().map(|row| (row.edge_id, row)).collect();
+    let mut known: BTreeMap<i64, EdgeRow> = before.into_iter().map(|row| (row.edge.id, row)).collect();
     let mut changes = Vec::new();
     let mut others = Vec::new();
     for row in after {
-        match known.remove(&row.edge_id) {
+        match known.remove(&row.edge.id) {
             Some(old) => changes.extend(Changed::became([&old, &row].map(Standing::of_edge), old, row)),
             None => others.push(row),
         }
     }
     let mut left: Vec<EdgeRow> = known.into_values().collect();
-    left.sort_by_key(|row| row.edge);
+    left.sort_by_key(|row| row.edge.index);
     for direction in [Direction::Forward, Direction::Backward] {
         let of = |rows: &[EdgeRow]| -> Vec<EdgeRow> {
-            rows.iter().filter(|row| row.direction == direction).cloned().collect()
+            rows.iter().filter(|row| row.edge.direction == direction).cloned().collect()
         };
         changes.extend(cut_anew(of(&left), of(&others)));
     }
@@ -206,7 +206,7 @@ fn way_changes(before: Vec<EdgeRow>, after: Vec<EdgeRow>) -> Vec<Changed<EdgeRow
 }
 
 fn both_directions(rows: &[EdgeRow]) -> bool {
-    let has = |direction| rows.iter().any(|row| row.direction == direction);
+    let has = |direction| rows.iter().any(|row| row.edge.direction == direction);
     has(Direction::Forward) && has(Direction::Backward)
 }
 
@@ -239,18 +239,18 @@ pub fn turns<E>(
     let mut known: FxHashMap<i64, TurnRow> = FxHashMap::default();
     for row in old {
         let row = row?;
-        known.insert(row.turn_id, row);
+        known.insert(row.turn.id, row);
     }
     for row in new {
         let row = row?;
-        let changed = match known.remove(&row.turn_id) {
+        let changed = match known.remove(&row.turn.id) {
             Some(old) => Changed::became([&old, &row].map(Standing::of_turn), old, row),
             None => Some(Changed::appeared(Standing::of_turn(&row), row)),
         };
         changed.into_iter().try_for_each(&mut sink)?;
     }
     let mut gone: Vec<TurnRow> = known.into_values().collect();
-    gone.sort_unstable_by_key(|row| row.turn);
+    gone.sort_unstable_by_key(|row| row.turn.index);
     let went = |row: TurnRow| Changed::went(Standing::of_turn(&row), row);
     gone.into_iter().map(went).try_for_each(&mut sink)
 }

@@ -16,12 +16,12 @@ pub struct Road {
 
 impl Road {
     fn of(row: &EdgeRow) -> Self {
-        let name = match (&row.reference, &row.name) {
+        let name = match (&row.road.reference, &row.road.name) {
             (Some(reference), Some(name)) => format!("{reference} {name}"),
             (Some(one), None) | (None, Some(one)) => one.clone(),
-            (None, None) => format!("way {}", row.way_id),
+            (None, None) => format!("way {}", row.edge.way_id),
         };
-        Self { highway: row.highway.clone(), name }
+        Self { highway: row.road.highway.clone(), name }
     }
 }
 
@@ -60,7 +60,7 @@ impl OnRoad {
         let own = Bounds::around(row.line.iter().copied());
         self.bounds = [self.bounds, own].into_iter().flatten().reduce(Bounds::union);
         if self.longest.is_none_or(|(_, length_m)| length_m < row.length_m) {
-            self.longest = Some((row.edge_id, row.length_m));
+            self.longest = Some((row.edge.id, row.length_m));
         }
     }
 }

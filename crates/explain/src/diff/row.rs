@@ -70,11 +70,11 @@ impl Row {
     #[must_use]
     pub fn of_edge(set: SetKey<'_>, changed: &Changed<EdgeRow>) -> Option<Self> {
         let edge = changed.row()?;
-        let mut row = Self::new(set, "edge", changed.change, edge.edge_id, edge.line.clone());
-        row.set("way_id", json!(edge.way_id));
-        row.set("highway", json!(edge.highway));
-        row.set("name", json!(edge.name));
-        row.set("ref", json!(edge.reference));
+        let mut row = Self::new(set, "edge", changed.change, edge.edge.id, edge.line.clone());
+        row.set("way_id", json!(edge.edge.way_id));
+        row.set("highway", json!(edge.road.highway));
+        row.set("name", json!(edge.road.name));
+        row.set("ref", json!(edge.road.reference));
         row.set("length_m", json!(edge.length_m));
         for (side, edge) in [("before", &changed.before), ("after", &changed.after)] {
             let Some(edge) = edge else { continue };
@@ -89,9 +89,9 @@ impl Row {
     #[must_use]
     pub fn of_turn(set: SetKey<'_>, changed: &Changed<TurnRow>) -> Option<Self> {
         let turn = changed.row()?;
-        let mut row = Self::new(set, "turn", changed.change, turn.turn_id, turn.line.clone());
+        let mut row = Self::new(set, "turn", changed.change, turn.turn.id, turn.line.clone());
         let of = |name: &Option<String>| name.clone().unwrap_or_else(|| "unnamed".to_owned());
-        row.set("name", json!(format!("{} → {}", of(&turn.from_name), of(&turn.to_name))));
+        row.set("name", json!(format!("{} → {}", of(&turn.turn.from_name), of(&turn.turn.to_name))));
         for (side, turn) in [("before", &changed.before), ("after", &changed.after)] {
             let Some(turn) = turn else { continue };
             row.side(side, Standing::of_turn(turn), &turn.certificate);

@@ -106,9 +106,9 @@ impl Head {
     fn new(e: &Explanation, words: &Words) -> Self {
         let vehicle = format!("{} {}", e.vehicle.id, e.vehicle.name);
         let subtitle = match &e.road {
-            Some(road) => {
-                let title = &road.title;
-                format!("{title}, {}, edge {} · {vehicle}", road.highway, road.edge_id)
+            Some(facts) => {
+                let title = &facts.title;
+                format!("{title}, {}, edge {} · {vehicle}", facts.road.highway, facts.edge.id)
             }
             None => format!("a corridor of one's own · {vehicle}"),
         };
