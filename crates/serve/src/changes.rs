@@ -139,7 +139,7 @@ impl Gathered<'_> {
         self.sums.add_edge(changed);
         let length_m = changed.row().map_or(0.0, |row| row.length_m);
         let own = &self.sides[usize::from(changed.after.is_some())];
-        let left = changed.row().and_then(|row| own.left(row.edge));
+        let left = changed.row().and_then(|row| own.left(row.edge.index));
         self.keep(Row::of_edge(self.set, changed), length_m, changed.two_way, left);
         Ok(())
     }

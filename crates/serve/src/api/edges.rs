@@ -31,7 +31,7 @@ pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Probl
     }
     let turns = match vehicle {
         Some(vehicle) => {
-            region.read(|db| db.map_turns(SetKey { vehicle: &vehicle.id, policy }, TurnsOf::Edge(facts.edge)))?
+            region.read(|db| db.map_turns(SetKey { vehicle: &vehicle.id, policy }, TurnsOf::Edge(facts.edge.index)))?
         }
         None => Vec::new(),
     };
@@ -65,16 +65,16 @@ fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
     legal.insert("open_when".to_owned(), json!(e.open_when));
     legal.insert("tags".to_owned(), json!(e.legal_tags));
     let members = json!({
-        "edge_id": e.edge_id.to_string(),
-        "feature_id": e.edge + 1,
-        "way_id": e.way_id.to_string(),
-        "from_node": e.from_node.to_string(),
-        "to_node": e.to_node.to_string(),
-        "direction": e.direction.name(),
+        "edge_id": e.edge.id.to_string(),
+        "feature_id": e.edge.index + 1,
+        "way_id": e.edge.way_id.to_string(),
+        "from_node": e.edge.from_node.to_string(),
+        "to_node": e.edge.to_node.to_string(),
+        "direction": e.edge.direction.name(),
         "oneway": e.oneway.name(),
-        "highway": e.highway,
-        "name": e.name,
-        "ref": e.reference,
+        "highway": e.road.highway,
+        "name": e.road.name,
+        "ref": e.road.reference,
         "title": title,
         "lanes": e.lanes,
         "maxspeed_kmh": e.maxspeed_kmh,
@@ -115,13 +115,13 @@ fn turn(roads: &RoadIndex, row: &MapTurn, edge_id: i64) -> Value {
     let (verdict, reason) = verdict_words(row.verdict);
     let line: Vec<_> = row.line.iter().map(|position| position.degrees()).collect();
     json!({
-        "turn_id": row.turn_id.to_string(),
-        "leads": if row.from_edge == edge_id { "out" } else { "in" },
-        "from_edge": row.from_edge.to_string(),
-        "to_edge": row.to_edge.to_string(),
-        "from_name": row.from_name,
-        "to_name": row.to_name,
-        "title": format!("{} into {}", title(roads, row.from_edge), title(roads, row.to_edge)),
+        "turn_id": row.turn.id.to_string(),
+        "leads": if row.turn.from_edge == edge_id { "out" } else { "in" },
+        "from_edge": row.turn.from_edge.to_string(),
+        "to_edge": row.turn.to_edge.to_string(),
+        "from_name": row.turn.from_name,
+        "to_name": row.turn.to_name,
+        "title": format!("{} into {}", title(roads, row.turn.from_edge), title(roads, row.turn.to_edge)),
         "kind": row.kind,
         "angle_deg": row.angle_deg,
         "kerb_radius_m": row.kerb_radius_m,

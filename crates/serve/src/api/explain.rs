@@ -161,7 +161,7 @@ fn of_turn(
     members["at"] = json!(node.map(LonLat::degrees));
     let set = SetKey { vehicle: &model.vehicle.id, policy: settings.policy };
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
-    members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
+    members["geometry"] = geometry(turns.iter().find(|row| row.turn.id == id).map(|row| row.line.as_slice()));
     members["suppose"] = suppose::of_turn(region, &facts, set, turn.explanation.verdict)?;
     members["note"] = json!(explain::TURN_NOTE);
     let measured = region.read(|database| database.measured_at(roads.network(), &facts))?;

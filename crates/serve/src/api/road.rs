@@ -16,7 +16,7 @@ use super::{GEOJSON, SCOPE, id};
 use crate::network::Network;
 use crate::osm::StringId;
 use crate::osm::facts::highway;
-use crate::rows::Bounds;
+use crate::rows::{Bounds, RoadName};
 use crate::words::{Named as _, verdict_words};
 
 /// More edges are not drawn. The summary counts them all.
@@ -24,9 +24,7 @@ const MOST_EDGES: usize = 20_000;
 
 /// What a road is called.
 pub(super) struct Told {
-    pub(super) name: Option<String>,
-    pub(super) reference: Option<String>,
-    pub(super) highway: String,
+    pub(super) road: RoadName,
     pub(super) title: String,
 }
 
@@ -72,9 +70,9 @@ fn members(roads: &RoadIndex, edges: &[u32], told: &Told, numbers: Option<&Numbe
         "type": "FeatureCollection",
         "bbox": bounds.map(|b| [b.west, b.south, b.east, b.north]),
         "title": told.title,
-        "name": told.name,
-        "ref": told.reference,
-        "highway": told.highway,
+        "name": told.road.name,
+        "ref": told.road.reference,
+        "highway": told.road.highway,
         "pieces": edges.len(),
         "complete": edges.len() <= MOST_EDGES,
         "summary": numbers.map(|numbers| numbers.summary(roads, edges.iter().copied())),
@@ -126,13 +124,14 @@ pub(super) fn told(network: &Network, whole: &WholeRoad) -> Told {
     let own = Some(whole.text.to_string());
     let (name, reference) = if whole.by_ref { (name, own) } else { (own, reference) };
     let title = reference.iter().chain(&name).map(String::as_str).collect::<Vec<_>>().join(" ");
-    Told { name, reference, highway, title }
+    Told { road: RoadName { highway, name, reference }, title }
 }
 
 fn unnamed(network: &Network, edges: &[u32]) -> Option<Told> {
     let edge = network.edges.get(*edges.first()? as usize)?;
     let road = network.road(edge);
-    Some(Told { name: None, reference: None, highway: highway(road.class, road.link), title: network.title(edge) })
+    let road = RoadName { highway: highway(road.class, road.link), name: None, reference: None };
+    Some(Told { road, title: network.title(edge) })
 }
 
 /// How many edges have each text.

@@ -14,7 +14,7 @@ use super::answered;
 use super::road::{Told, edges_of_way, told};
 use super::summary::Numbers;
 use crate::route::Position;
-use crate::rows::Bounds;
+use crate::rows::{Bounds, RoadName};
 
 /// The longest search text, characters.
 const LONGEST: usize = 80;
@@ -81,7 +81,7 @@ fn whole(roads: &RoadIndex, road: &WholeRoad) -> Found {
     let Some((mut members, edges)) = found(roads, "road", &id.to_string(), road.bounds, edges) else {
         return (Value::Null, Vec::new());
     };
-    let Told { name, reference, title, .. } = told(network, road);
+    let Told { road: RoadName { name, reference, .. }, title } = told(network, road);
     members["name"] = json!(name);
     members["ref"] = json!(reference);
     members["title"] = json!(title);

@@ -17,7 +17,7 @@ const LEAST_COSINE: f64 = 0.5;
 /// A line with the road whose name it shows.
 pub(super) struct Label<'r> {
     /// The first edge of the line, which has the name.
-    pub(super) road: &'r MapEdge<'r>,
+    pub(super) edge: &'r MapEdge<'r>,
     pub(super) line: Vec<LonLat>,
 }
 
@@ -28,20 +28,23 @@ type Ends = BTreeMap<(i32, i32), Vec<usize>>;
 pub(super) fn labels<'r>(rows: &'r [MapEdge<'r>], z: u8) -> Vec<Label<'r>> {
     let mut roads: BTreeMap<Name<'r>, Vec<&'r MapEdge<'r>>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.line.len() > 1 && is_named(row, z)) {
-        roads.entry((&row.highway, row.name.as_deref(), row.reference.as_deref())).or_default().push(row);
+        roads
+            .entry((&row.road.highway, row.road.name.as_deref(), row.road.reference.as_deref()))
+            .or_default()
+            .push(row);
     }
     roads.into_values().flat_map(|mut edges| joined(&mut edges)).collect()
 }
 
 /// Whether the row's name is shown at zoom `z`. As on general maps, names of main roads appear first.
 fn is_named(row: &MapEdge<'_>, z: u8) -> bool {
-    let first = match row.highway.trim_end_matches("_link") {
+    let first = match row.road.highway.trim_end_matches("_link") {
         "motorway" | "trunk" | "primary" => FIRST_WITH_LABELS,
         "secondary" => 12,
         "tertiary" => 13,
         _ => 14,
     };
-    z >= first && (row.name.is_some() || row.reference.is_some())
+    z >= first && (row.road.name.is_some() || row.road.reference.is_some())
 }
 
 fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
@@ -49,7 +52,7 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
     let mut seen = std::collections::BTreeSet::new();
     edges.retain(|edge| {
         let (a, b) = (key(edge.line.first()), key(edge.line.last()));
-        seen.insert((edge.way_id, a.min(b), a.max(b), edge.line.len()))
+        seen.insert((edge.edge.way_id, a.min(b), a.max(b), edge.line.len()))
     });
     let mut ends: Ends = BTreeMap::new();
     for (i, edge) in edges.iter().enumerate() {
@@ -58,11 +61,11 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
     }
     let mut used = vec![false; edges.len()];
     let mut labels = Vec::new();
-    for (i, &road) in edges.iter().enumerate() {
+    for (i, &edge) in edges.iter().enumerate() {
         if std::mem::replace(&mut used[i], true) {
             continue;
         }
-        let mut line = road.line.clone();
+        let mut line = edge.line.clone();
         for _ in 0..2 {
             while let Some((next, more)) = onward(&line, edges, &mut ends, &used) {
                 used[next] = true;
@@ -70,7 +73,7 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
             }
             line.reverse();
         }
-        labels.push(Label { road, line });
+        labels.push(Label { edge, line });
     }
     labels
 }
@@ -120,19 +123,19 @@ fn cosine([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::osm::facts::{Direction, Oneway};
-    use crate::rows::MapNumbers;
+    use crate::rows::{EdgeKey, MapNumbers, RoadName};
     use crate::verdict::{UnknownReason, Verdict};
+
+    fn edge_key(index: u32, way_id: i64) -> EdgeKey {
+        let (from_node, to_node, direction) = (0, 1, Direction::Forward);
+        EdgeKey { index, id: i64::from(index), way_id, from_node, to_node, direction }
+    }
 
     fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge<'static> {
         MapEdge {
-            edge: number,
-            edge_id: i64::from(number),
-            way_id: 1,
-            direction: Direction::Forward,
+            edge: edge_key(number, 1),
             oneway: Oneway::No,
-            highway: "primary".into(),
-            name: Some(name.to_owned().into()),
-            reference: None,
+            road: RoadName { highway: "primary".into(), name: Some(name.to_owned().into()), reference: None },
             numbers: MapNumbers {
                 length_m: 1.0,
                 width_m: None,
@@ -189,7 +192,7 @@ mod tests {
             (0..2_000).map(|k| (k * (1 + i % 60) + k.min(1) * i, k * (1 + i / 60) + k.min(1) * i)).collect()
         };
         let rows: Vec<MapEdge<'_>> = (0..3_000_u32)
-            .map(|i| MapEdge { way_id: i64::from(i), ..edge(i, "High Street", &spoke(i as i32)) })
+            .map(|i| MapEdge { edge: edge_key(i, i64::from(i)), ..edge(i, "High Street", &spoke(i as i32)) })
             .collect();
         let positions: usize = labels(&rows, 14).iter().map(|label| label.line.len()).sum();
         assert!(positions >= 3_000 * 1_999, "{positions}");

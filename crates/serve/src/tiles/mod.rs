@@ -82,17 +82,17 @@ fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddr
     let sides = region.sides()?;
     let lines = edges.par_iter().with_min_len(near::LEAST_IN_PARALLEL).map(|row| drawn(&row.line, tile));
     for (row, lines) in edges.iter().zip(lines.collect::<Vec<_>>()) {
-        edge(&mut layer, row, &lines, sides.left(row.edge), tile.z);
+        edge(&mut layer, row, &lines, sides.left(row.edge.index), tile.z);
     }
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
     if tile.z >= FIRST_WITH_LABELS {
         let mut layer = Layer::new("label", EXTENT as u16);
-        for Label { road, line } in labels(&edges, tile.z) {
-            layer.feature(Some(u64::from(road.edge) + 1), &drawn(&line, tile), |tags| {
-                tags.text("name", road.name.as_deref());
-                tags.text("ref", road.reference.as_deref());
-                tags.add("highway", Value::Text(&road.highway));
+        for Label { edge, line } in labels(&edges, tile.z) {
+            layer.feature(Some(u64::from(edge.edge.index) + 1), &drawn(&line, tile), |tags| {
+                tags.text("name", edge.road.name.as_deref());
+                tags.text("ref", edge.road.reference.as_deref());
+                tags.add("highway", Value::Text(&edge.road.highway));
             });
         }
         layer.finish(&mut bytes);
@@ -161,12 +161,12 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], tile: TileAddress) -> Vec<Vec<[
 fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
     let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m, shared } = row.numbers;
     let (verdict, reason) = verdict_words(verdict);
-    layer.feature(Some(u64::from(row.edge) + 1), lines, |tags| {
-        tags.only("edge_id", Value::Text(&row.edge_id.to_string()));
-        tags.text("name", row.name.as_deref());
-        tags.text("ref", row.reference.as_deref());
-        tags.add("highway", Value::Text(&row.highway));
-        tags.add("direction", Value::Text(row.direction.name()));
+    layer.feature(Some(u64::from(row.edge.index) + 1), lines, |tags| {
+        tags.only("edge_id", Value::Text(&row.edge.id.to_string()));
+        tags.text("name", row.road.name.as_deref());
+        tags.text("ref", row.road.reference.as_deref());
+        tags.add("highway", Value::Text(&row.road.highway));
+        tags.add("direction", Value::Text(row.edge.direction.name()));
         tags.add("oneway", Value::Text(row.oneway.name()));
         tags.add("verdict", Value::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
@@ -177,7 +177,7 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
         tags.truth("shared", shared.then_some(true));
         tags.text("width_source", width_source.map(WidthSource::name));
         if z >= FIRST_IN_FULL {
-            tags.add("way_id", Value::Whole(row.way_id));
+            tags.add("way_id", Value::Whole(row.edge.way_id));
             tags.number("width_m", width_m.map(centimetre));
             tags.number("need_width_m", need_width_m);
             tags.number("length_m", Some(centimetre(length_m)));
@@ -188,10 +188,10 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
 fn turn(layer: &mut Layer, row: &MapTurn, tile: TileAddress) {
     let lines = drawn(&row.line, tile);
     let (verdict, reason) = verdict_words(row.verdict);
-    layer.feature(Some(u64::from(row.turn) + 1), &lines, |tags| {
-        tags.only("turn_id", Value::Text(&row.turn_id.to_string()));
-        tags.add("from_edge", Value::Text(&row.from_edge.to_string()));
-        tags.add("to_edge", Value::Text(&row.to_edge.to_string()));
+    layer.feature(Some(u64::from(row.turn.index) + 1), &lines, |tags| {
+        tags.only("turn_id", Value::Text(&row.turn.id.to_string()));
+        tags.add("from_edge", Value::Text(&row.turn.from_edge.to_string()));
+        tags.add("to_edge", Value::Text(&row.turn.to_edge.to_string()));
         tags.add("kind", Value::Text(&row.kind));
         tags.number("angle_deg", Some(row.angle_deg));
         tags.add("verdict", Value::Text(verdict));

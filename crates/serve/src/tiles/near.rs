@@ -1,8 +1,6 @@
 //! The edges near a tile: from the network in memory if it is loaded, otherwise from the file through its spatial index. Both
 //! ways give the same rows.
 
-use std::borrow::Cow;
-
 use rayon::prelude::*;
 
 use super::super::problem::Problem;
@@ -11,7 +9,7 @@ use super::super::roads::RoadIndex;
 use crate::network::Network;
 use crate::osm::facts::RoadClass;
 use crate::osm::facts::highway;
-use crate::rows::{Bounds, MapEdge, MapNumbers, SetKey};
+use crate::rows::{Bounds, EdgeKey, MapEdge, MapNumbers, RoadName, SetKey};
 use crate::words::Named as _;
 
 /// Fewer edges are not worth a second thread.
@@ -38,17 +36,12 @@ pub(super) fn edges<'r>(
 
 /// `None` if the edge is of another class.
 fn map_edge<'r>(network: &'r Network, index: u32, numbers: MapNumbers, classes: &[RoadClass]) -> Option<MapEdge<'r>> {
-    let edge = network.edges.get(index as usize)?;
+    let (key, edge) = (EdgeKey::of(network, index)?, network.edges.get(index as usize)?);
     let road = network.road(edge);
     classes.contains(&road.class).then(|| MapEdge {
-        edge: index,
-        edge_id: edge.id,
-        way_id: road.way_id,
-        direction: edge.direction,
+        edge: key,
         oneway: road.oneway,
-        highway: if road.link { highway(road.class, true).into() } else { road.class.name().into() },
-        name: road.name.map(|text| Cow::Borrowed(network.strings.text(text))),
-        reference: road.reference.map(|text| Cow::Borrowed(network.strings.text(text))),
+        road: RoadName::of(network, road),
         numbers,
         line: network.positions(edge).collect(),
     })

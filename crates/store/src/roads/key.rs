@@ -5,7 +5,7 @@ use sqlx::sqlite::SqliteRow;
 
 use netcert_rows::{EdgeKey, RoadName, TurnKey};
 
-use crate::roads::network_read::word;
+use crate::columns::read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
