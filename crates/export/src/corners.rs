@@ -23,7 +23,7 @@ impl Source<'_> {
         for row in self.told(database.edge_steps(vehicle, policy)?) {
             let row = row?;
             if piece.replace(row.shape_start) != Some(row.shape_start) {
-                for node in [row.from_node, row.to_node] {
+                for node in [row.edge.from_node, row.edge.to_node] {
                     meeting.entry(node).and_modify(|ends| *ends += 1);
                 }
             }

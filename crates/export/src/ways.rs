@@ -90,10 +90,10 @@ impl<'d> WayEdges<'d> {
         }
         self.last_way = way_id;
         let mut rows = Vec::new();
-        while let Some(row) = self.rows.next_if(|row| row.as_ref().map_or(true, |row| row.way_id <= way_id)) {
+        while let Some(row) = self.rows.next_if(|row| row.as_ref().map_or(true, |row| row.edge.way_id <= way_id)) {
             let row = row.map_err(|e: StoreError| e.to_string())?;
-            if row.way_id < way_id {
-                return Err(format!("way {} of the network is not where its id belongs: {SORT}", row.way_id));
+            if row.edge.way_id < way_id {
+                return Err(format!("way {} of the network is not where its id belongs: {SORT}", row.edge.way_id));
             }
             rows.push(row);
         }
@@ -107,7 +107,7 @@ impl<'d> WayEdges<'d> {
     pub(super) fn finish(mut self) -> Result<(), String> {
         match self.rows.next() {
             None => Ok(()),
-            Some(Ok(row)) => Err(format!("way {} of the network is not where its id belongs: {SORT}", row.way_id)),
+            Some(Ok(row)) => Err(format!("way {} of the network is not where its id belongs: {SORT}", row.edge.way_id)),
             Some(Err(error)) => Err(error.to_string()),
         }
     }
@@ -127,13 +127,13 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
     let mut at = 0;
     for both in rows.chunk_by(|a, b| a.shape_start == b.shape_start) {
         let Some(place) = place_of(both, &line, at) else {
-            return OnWay::Unclear(rows.iter().map(|row| row.edge).collect());
+            return OnWay::Unclear(rows.iter().map(|row| row.edge.index).collect());
         };
         at = place + both[0].positions as usize - 1;
-        let of = |direction| both.iter().find(|row| row.direction == direction);
+        let of = |direction| both.iter().find(|row| row.edge.direction == direction);
         let [along, against] = [of(Direction::Forward), of(Direction::Backward)];
         let (edges, rsc_m) =
-            ([along, against].map(|row| row.map(|row| row.edge)), [along, against].map(|row| row?.rsc_m));
+            ([along, against].map(|row| row.map(|row| row.edge.index)), [along, against].map(|row| row?.rsc_m));
         stretches.push(WayStretch { first: line[place].0, last: line[at].0, edges, rsc_m });
     }
     OnWay::Stretches(stretches)
@@ -143,9 +143,9 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
 /// matching place.
 fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize> {
     let row = both.first()?;
-    let ends = match row.direction {
-        Direction::Forward => [row.from_node, row.to_node],
-        Direction::Backward => [row.to_node, row.from_node],
+    let ends = match row.edge.direction {
+        Direction::Forward => [row.edge.from_node, row.edge.to_node],
+        Direction::Backward => [row.edge.to_node, row.edge.from_node],
     };
     let steps = (row.positions as usize).checked_sub(1).filter(|&steps| steps > 0)?;
     let fits = |&place: &usize| {
@@ -197,6 +197,7 @@ impl Source<'_> {
 mod tests {
     #![allow(clippy::panic)]
     use super::*;
+    use crate::rows::EdgeKey;
     use crate::verdict::Verdict;
 
     fn row(
@@ -206,8 +207,9 @@ mod tests {
         [from_node, to_node]: [i64; 2],
         direction: Direction,
     ) -> EdgeStep {
-        let (way_id, verdict, rsc_m, width_source) = (1, Verdict::Safe, None, None);
-        EdgeStep { edge, way_id, from_node, to_node, direction, shape_start, positions, verdict, rsc_m, width_source }
+        let edge = EdgeKey { index: edge, id: i64::from(edge), way_id: 1, from_node, to_node, direction };
+        let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
+        EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }
     }
 
     use Direction::{Backward, Forward};

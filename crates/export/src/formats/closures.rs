@@ -64,14 +64,14 @@ pub(super) fn each(
         let refused = !permitted || stopped.contains(&index);
         // The two directions of a stretch are successive edges.
         if let Some(stretch) = &mut last
-            && stretch.way_id == edge.row.way_id
+            && stretch.way_id == edge.row.edge.way_id
             && stretch.line.iter().rev().eq(&edge.row.line)
         {
             stretch.refused |= refused;
             stretch.permitted |= permitted;
             continue;
         }
-        let stretch = Stretch { way_id: edge.row.way_id, line: edge.row.line, refused, permitted };
+        let stretch = Stretch { way_id: edge.row.edge.way_id, line: edge.row.line, refused, permitted };
         if let Some(done) = last.replace(stretch) {
             end(done)?;
         }

@@ -64,9 +64,9 @@ impl Layer {
                     let edge = edge?;
                     let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
                     let own = Standing::of(&edge.row.certificate);
-                    let relative = beside.as_mut().map(|other| other.relative(edge.row.edge, own)).transpose()?;
+                    let relative = beside.as_mut().map(|other| other.relative(edge.row.edge.index, own)).transpose()?;
                     let cells = with_relative(&edge_cells(source, &edge, &refusal), relative);
-                    put(&Row { id: edge.row.edge_id, cells: &cells, line: &edge.row.line })?;
+                    put(&Row { id: edge.row.edge.id, cells: &cells, line: &edge.row.line })?;
                 }
             }
             Self::Turns => {
@@ -75,9 +75,9 @@ impl Layer {
                     let turn = turn?;
                     let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
                     let own = Standing::of(&turn.row.certificate);
-                    let relative = beside.as_mut().map(|other| other.relative(turn.row.turn, own)).transpose()?;
+                    let relative = beside.as_mut().map(|other| other.relative(turn.row.turn.index, own)).transpose()?;
                     let cells = with_relative(&turn_cells(source, &turn, &refusal), relative);
-                    put(&Row { id: turn.row.turn_id, cells: &cells, line: &turn.row.line })?;
+                    put(&Row { id: turn.row.turn.id, cells: &cells, line: &turn.row.line })?;
                 }
             }
         }

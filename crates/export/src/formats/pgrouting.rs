@@ -66,11 +66,11 @@ fn edges(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
 fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
     let row = &edge.row;
     let cost = if edge.refusal.is_none() { row.length_m } else { -1.0 };
-    let (id, edge_id, way) = (u64::from(row.edge) + 1, row.edge_id, row.way_id);
-    write!(out, "{id}\t{edge_id}\t{way}\t{}\t{}\t{cost}\t{}\t", row.from_node, row.to_node, row.length_m)?;
-    field(out, &row.highway)?;
+    let (id, edge_id, way) = (u64::from(row.edge.index) + 1, row.edge.id, row.edge.way_id);
+    write!(out, "{id}\t{edge_id}\t{way}\t{}\t{}\t{cost}\t{}\t", row.edge.from_node, row.edge.to_node, row.length_m)?;
+    field(out, &row.road.highway)?;
     let refusal = edge.refusal.map(Refusal::words);
-    for text in [row.name.as_deref(), row.reference.as_deref(), refusal.as_deref()] {
+    for text in [row.road.name.as_deref(), row.road.reference.as_deref(), refusal.as_deref()] {
         out.write_all(b"\t")?;
         match text {
             Some(text) => field(out, text)?,

@@ -4,7 +4,7 @@
 use std::io::Write as _;
 
 use crate::osm::facts::Direction;
-use crate::rows::EdgeStep;
+use crate::rows::{EdgeKey, EdgeStep};
 use crate::scratch::Scratch;
 use crate::{ExportError, Source};
 
@@ -87,7 +87,8 @@ struct Chain {
 
 impl Chain {
     fn next(&mut self, facts: &EdgeStep) -> EdgeLocation {
-        let &EdgeStep { way_id, shape_start, positions, direction: heading, to_node: end, .. } = facts;
+        let &EdgeStep { edge, shape_start, positions, .. } = facts;
+        let EdgeKey { way_id, direction: heading, to_node: end, .. } = edge;
         if self.way_id != Some(way_id) {
             *self = Self { way_id: Some(way_id), ..Self::default() };
         } else if shape_start != self.shape_start && shape_start != self.shape_last {
@@ -106,8 +107,8 @@ mod tests {
 
     fn facts(way_id: i64, shape_start: u32, positions: u32, direction: Direction) -> EdgeStep {
         let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
-        let (edge, from_node, to_node) = (0, 1, -2);
-        EdgeStep { edge, way_id, from_node, to_node, direction, shape_start, positions, verdict, rsc_m, width_source }
+        let edge = EdgeKey { index: 0, id: 0, way_id, from_node: 1, to_node: -2, direction };
+        EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }
     }
 
     #[test]

@@ -165,7 +165,7 @@ impl Writer<'_, '_> {
         let mut open: Option<Segment> = None;
         for edge in source.edges(&mut database)? {
             let edge = edge?;
-            let location = self.locations.get(edge.row.edge)?;
+            let location = self.locations.get(edge.row.edge.index)?;
             let same = open.as_ref().is_some_and(|open| (open.way_id, open.chain) == (location.way_id, location.chain));
             if !same && let Some(done) = open.take() {
                 self.write(&done)?;
@@ -178,7 +178,7 @@ impl Writer<'_, '_> {
                 stretch.values.take(&edge.row, location.heading, source.ask.policy);
             }
             if edge.refusal.is_none() {
-                let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;
+                let forbidden = self.forbidden(edge.row.edge.index, edge.row.edge.to_node)?;
                 if let Some(stretch) = segment.stretches.last_mut() {
                     stretch.permitted[location.heading as usize] = Some(forbidden);
                 }

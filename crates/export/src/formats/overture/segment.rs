@@ -10,7 +10,7 @@ use super::locations::EdgeLocation;
 use super::values::{self, Values};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
-use crate::rows::EdgeRow;
+use crate::rows::{EdgeRow, RoadName};
 use crate::words::Named as _;
 
 /// The vehicles that the rules apply to.
@@ -40,7 +40,7 @@ impl SegmentStretch {
     /// A stretch made from the first of its edges. Nothing is permitted yet.
     pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
         let mut line = row.line.clone();
-        let mut nodes = [row.from_node, row.to_node];
+        let mut nodes = [row.edge.from_node, row.edge.to_node];
         if location.heading == Direction::Backward {
             line.reverse();
             nodes.reverse();
@@ -53,9 +53,7 @@ impl SegmentStretch {
 pub(super) struct Segment {
     pub(super) way_id: i64,
     pub(super) chain: u32,
-    highway: String,
-    name: Option<String>,
-    reference: Option<String>,
+    road: RoadName,
     pub(super) stretches: Vec<SegmentStretch>,
 }
 
@@ -73,14 +71,7 @@ impl Segment {
     /// A segment without stretches.
     pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
         let EdgeLocation { way_id, chain, .. } = *location;
-        Self {
-            way_id,
-            chain,
-            highway: row.highway.clone(),
-            name: row.name.clone(),
-            reference: row.reference.clone(),
-            stretches: Vec::new(),
-        }
+        Self { way_id, chain, road: row.road.clone(), stretches: Vec::new() }
     }
 
     /// The nodes at which the segment meets others.
@@ -94,7 +85,7 @@ impl Segment {
     /// The segment as a GeoJSON feature.
     pub(super) fn feature(&self, scope: &Scope) -> Value {
         let at = self.at();
-        let (class, link) = values::class(&self.highway);
+        let (class, link) = values::class(&self.road.highway);
         let mut properties = json!({
             "theme": "transportation",
             "type": "segment",
@@ -113,10 +104,10 @@ impl Segment {
             if link {
                 members.insert("subclass".to_owned(), json!("link"));
             }
-            if let Some(name) = self.name.as_deref().map(str::trim).filter(|name| !name.is_empty()) {
+            if let Some(name) = self.road.name.as_deref().map(str::trim).filter(|name| !name.is_empty()) {
                 members.insert("names".to_owned(), json!({"primary": name}));
             }
-            if let Some(reference) = self.reference.as_deref().map(str::trim).filter(|text| !text.is_empty()) {
+            if let Some(reference) = self.road.reference.as_deref().map(str::trim).filter(|text| !text.is_empty()) {
                 members.insert("routes".to_owned(), json!([{"ref": reference}]));
             }
             for (member, rules) in [
@@ -275,8 +266,12 @@ mod tests {
     }
 
     fn segment(stretches: Vec<SegmentStretch>) -> Value {
-        let segment =
-            Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, reference: None, stretches };
+        let segment = Segment {
+            way_id: 7,
+            chain: 0,
+            road: RoadName { highway: "primary_link".to_owned(), name: None, reference: None },
+            stretches,
+        };
         segment.feature(&Scope { length_m: 16.5 })["properties"].clone()
     }
 
