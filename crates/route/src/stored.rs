@@ -32,14 +32,14 @@ impl Permits {
         let mut edges = vec![Permit::UNKNOWN; network.edges.len()];
         for row in database.query(&QueryOptions::new(vehicle, policy))? {
             let row = row?;
-            if let Some(slot) = edges.get_mut(row.edge as usize) {
+            if let Some(slot) = edges.get_mut(row.edge.index as usize) {
                 *slot = Permit::of(&row.certificate);
             }
         }
         let turns: FxHashMap<(i64, i64), Permit> = database
             .query_turns(&TurnQuery::new(vehicle, policy))?
             .into_iter()
-            .map(|row| ((row.from_edge, row.to_edge), Permit::of(&row.certificate)))
+            .map(|row| ((row.turn.from_edge, row.turn.to_edge), Permit::of(&row.certificate)))
             .collect();
         let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
         let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);

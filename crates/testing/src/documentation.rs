@@ -40,7 +40,7 @@ pub fn two_places(path: &std::path::Path) -> [netcert::route::Position; 2] {
     let rows = database.query_turns(&TurnQuery::new("AGV-TUG4", Policy::Carriageway)).expect("its turns");
     let turn =
         rows.into_iter().find(|row| row.certificate.verdict == netcert::verdict::Verdict::Safe).expect("a safe turn");
-    [turn.from_edge, turn.to_edge].map(|edge_id| {
+    [turn.turn.from_edge, turn.turn.to_edge].map(|edge_id| {
         let options = QueryOptions { edge_id: Some(edge_id), ..QueryOptions::new("AGV-TUG4", Policy::Carriageway) };
         let row = database.query(&options).expect("its edges").next().expect("the edge").expect("a row");
         let (lon, lat) = row.line[row.line.len() / 2].degrees();

@@ -13,14 +13,14 @@ pub(super) fn check(database: &mut Database, network: &Network) -> Result<Vec<Co
     let mut complaints = Vec::new();
     for facts in database.all_edge_facts()? {
         let facts = facts?;
-        let detail = match network.edges.get(facts.edge as usize) {
+        let detail = match network.edges.get(facts.edge.index as usize) {
             Some(edge) => wrong(network, edge, &facts).map(|column| format!("{column}: not what its road says")),
             None => Some("its road is not there".to_owned()),
         };
         complaints.extend(
             detail.map(|detail| Complaint {
                 grade: Grade::Malformed,
-                detail: format!("edge {}: {detail}", facts.edge_id),
+                detail: format!("edge {}: {detail}", facts.edge.id),
             }),
         );
     }
@@ -33,11 +33,11 @@ fn wrong(network: &Network, edge: &Edge, facts: &EdgeFacts) -> Option<String> {
     let text = |id| network.strings.text(id).to_owned();
     let direction = edge.direction as usize;
     let same = [
-        ("way_id", facts.way_id == road.way_id),
+        ("way_id", facts.edge.way_id == road.way_id),
         ("oneway", facts.oneway == road.oneway),
-        ("highway", facts.highway == highway(road.class, road.link)),
-        ("name", facts.name == road.name.map(text)),
-        ("ref", facts.reference == road.reference.map(text)),
+        ("highway", facts.road.highway == highway(road.class, road.link)),
+        ("name", facts.road.name == road.name.map(text)),
+        ("ref", facts.road.reference == road.reference.map(text)),
         ("lanes", facts.lanes == road.lanes),
         ("maxspeed_kmh", facts.maxspeed_kmh == road.max_speed_km_h[direction].map(u8::from)),
         // What nodes and barriers add is stricter than the road.

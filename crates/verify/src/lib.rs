@@ -247,8 +247,8 @@ impl Request {
         let query =
             QueryOptions { area: self.area.map(Area::Bounds), ..QueryOptions::new(&set.vehicle_id, set.policy) };
         let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
-        let rows = self.sampled(rows, |row| row.edge_id);
-        let rows: BTreeMap<u32, EdgeRow> = rows.into_iter().map(|row| (row.edge, row)).collect();
+        let rows = self.sampled(rows, |row| row.edge.id);
+        let rows: BTreeMap<u32, EdgeRow> = rows.into_iter().map(|row| (row.edge.index, row)).collect();
         let plans = database.plans(&set.vehicle_id, set.policy)?;
         let claim = SetClaim {
             network,
@@ -276,11 +276,11 @@ impl Request {
         let every = QueryOptions::new(&set.vehicle_id, set.policy);
         let edges: BTreeMap<u32, Verdict> = database
             .query(&every)?
-            .map(|row| row.map(|row| (row.edge, row.certificate.verdict)))
+            .map(|row| row.map(|row| (row.edge.index, row.certificate.verdict)))
             .collect::<Result<_, _>>()?;
         let query = TurnQuery { area: self.area.map(Area::Bounds), ..TurnQuery::new(&set.vehicle_id, set.policy) };
-        let rows = self.sampled(database.query_turns(&query)?, |row| row.turn_id);
-        let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn, row)).collect();
+        let rows = self.sampled(database.query_turns(&query)?, |row| row.turn.id);
+        let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn.index, row)).collect();
         let plans = database.turn_plans(&set.vehicle_id, set.policy)?;
         let claim = TurnsClaim {
             network,

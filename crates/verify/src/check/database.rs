@@ -142,7 +142,7 @@ impl SetClaim<'_> {
             // A stroke may have a place that no corridor fits. Only the verdicts unknown and forbidden are confirmed there.
             Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),
         };
-        let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge);
+        let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge.index);
         let (mut claims, mut claimed) = (Vec::new(), Vec::new());
         for row in rows {
             if let (Some(span), Some(claim)) = (
@@ -150,7 +150,7 @@ impl SetClaim<'_> {
                 span_of(row)
                     .and_then(|span| row_claim::claim(&row.certificate, &span.stations, made.corridor.spacing_m)),
             ) {
-                claimed.push((row.edge, span));
+                claimed.push((row.edge.index, span));
                 claims.push(claim);
             }
         }
@@ -158,7 +158,7 @@ impl SetClaim<'_> {
         let mut found: BTreeMap<u32, Vec<Finding>> = claimed.iter().map(|(edge, _)| *edge).zip(found).collect();
         let outcome = |row: &EdgeRow| {
             let Some(span) = span_of(row) else { return Outcome::Malformed("its stroke does not pass it".to_owned()) };
-            let mut all = found.remove(&row.edge).unwrap_or_default();
+            let mut all = found.remove(&row.edge.index).unwrap_or_default();
             match self.without_claims(row, span.unknown) {
                 Outcome::Confirmed => {}
                 Outcome::Remarked(more) | Outcome::NotConfirmed(more) => all.extend(more),
@@ -177,7 +177,7 @@ impl SetClaim<'_> {
     /// Checks that verdict, reason and numbers agree with each other, with legal limits, and with whether there is a corridor.
     fn without_claims(&self, row: &EdgeRow, unknown: Option<UnknownReason>) -> Outcome {
         let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
-        let Some(edge) = self.network.edges.get(row.edge as usize) else {
+        let Some(edge) = self.network.edges.get(row.edge.index as usize) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
         if let Some(Err(why)) = row.certificate.shrink.map(|shrink| rules::shrink(self.vehicle, shrink)) {
@@ -236,7 +236,7 @@ impl SetClaim<'_> {
 }
 
 fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
-    RowOutcome { index: row.edge, id: row.edge_id, verdict: row.certificate.verdict, outcome }
+    RowOutcome { index: row.edge.index, id: row.edge.id, verdict: row.certificate.verdict, outcome }
 }
 
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {

@@ -71,7 +71,7 @@ impl TurnsClaim<'_> {
             for (row, (outcome, km)) in batch.iter().zip(checked) {
                 report.swept_km += km;
                 let verdict = row.certificate.verdict;
-                report.rows.push(RowOutcome { index: row.turn, id: row.turn_id, verdict, outcome });
+                report.rows.push(RowOutcome { index: row.turn.index, id: row.turn.id, verdict, outcome });
             }
         }
         Ok(report)
@@ -80,7 +80,8 @@ impl TurnsClaim<'_> {
     /// The lines of the strokes at the ends of these turns. One that takes too long is not made.
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
         let claims = batch.iter().filter(|row| !row_claim::claims_nothing(&row.certificate));
-        let open = claims.filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
+        let open =
+            claims.filter_map(|row| self.facts.get(row.turn.index as usize)).filter(|t| self.barred(t).is_none());
         let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.iter().copied()));
         let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
         let line = |stroke: u32| {
@@ -142,15 +143,15 @@ impl TurnsClaim<'_> {
 
     /// The outcome of a row, which is not confirmed if that takes too long, and the kilometres that were swept for it.
     fn in_time(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
-        let (number, of) = (u64::from(row.turn) + 1, self.facts.len() as u64);
-        let work = Work { what: "turn", number, of, edge: Some(row.from_edge) };
+        let (number, of) = (u64::from(row.turn.index) + 1, self.facts.len() as u64);
+        let work = Work { what: "turn", number, of, edge: Some(row.turn.from_edge) };
         let checked = watch::guarded(work, watch::patience(), || self.row(chain, row, stroke_of, lines));
         checked.unwrap_or_else(|TookTooLong| (rules::took_too_long(), 0.0))
     }
 
     /// The outcome of a row, and the kilometres that were swept for it.
     fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
-        let Some(turn) = self.facts.get(row.turn as usize) else {
+        let Some(turn) = self.facts.get(row.turn.index as usize) else {
             return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
         };
         if let Some(wrong) = self.misdescribed(turn, row) {
@@ -181,9 +182,9 @@ impl TurnsClaim<'_> {
         let id = |edge: u32| self.network.edges.get(edge as usize).map_or(0, |edge| edge.id);
         let arcs = turn.through.first().zip(turn.through.last()).map(|(&first, &last)| [id(first), id(last)]);
         let same = [
-            ("turn_id", row.turn_id == turn.id),
-            ("from_fid", row.from_edge == id(turn.movement.from)),
-            ("to_fid", row.to_edge == id(turn.movement.to)),
+            ("turn_id", row.turn.id == turn.id),
+            ("from_fid", row.turn.from_edge == id(turn.movement.from)),
+            ("to_fid", row.turn.to_edge == id(turn.movement.to)),
             ("first_arc_fid, last_arc_fid", row.arcs == arcs),
             ("kerb_radius_m", row.kerb_radius_m == turn.kerb_radius_m),
             ("kerb_source", row.kerb_source.as_deref() == turn.kerb_source.map(KerbSource::name)),
@@ -224,7 +225,7 @@ impl TurnsClaim<'_> {
             return (Outcome::Malformed(format!("the turn has no path {code}")), 0.0);
         };
         let none = vec![0; plan::count(path.corridor.len())];
-        let coefficients = self.plans.get(&row.turn).unwrap_or(&none);
+        let coefficients = self.plans.get(&row.turn.index).unwrap_or(&none);
         if coefficients.len() != none.len() {
             return (Outcome::Malformed(format!("the plan has {} coefficients", coefficients.len())), 0.0);
         }
