@@ -101,7 +101,7 @@ fn main() -> Result<(), Failure> {
     let (mut all, mut main) = (Count::default(), Count::default());
     for (row, width) in rows.iter().zip(&widths) {
         all.add(row, width.as_ref());
-        if MAIN.contains(&row.highway.trim_end_matches("_link")) {
+        if MAIN.contains(&row.road.highway.trim_end_matches("_link")) {
             main.add(row, width.as_ref());
         }
     }
@@ -141,10 +141,10 @@ fn list(rows: &[EdgeRow], widths: &[Option<Width>]) {
         let Some(width) = width.as_ref().filter(|width| width.lost()) else { continue };
         println!(
             "{},{},{},{},{:?},{:.2},{:.2},{:.2},{:.1},{:.1}",
-            row.edge,
-            row.edge_id,
-            row.way_id,
-            row.highway,
+            row.edge.index,
+            row.edge.id,
+            row.edge.way_id,
+            row.road.highway,
             row.certificate.verdict,
             width.strip_m,
             width.limiting_m.unwrap_or(f64::NAN),

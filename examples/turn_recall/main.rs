@@ -45,26 +45,26 @@ fn main() {
     let mut safe = vec![false; network.edges.len()];
     for row in database.query(&netcert::store::QueryOptions::new(id, policy)).unwrap() {
         let row = row.unwrap();
-        safe[row.edge as usize] = row.certificate.verdict == Verdict::Safe;
+        safe[row.edge.index as usize] = row.certificate.verdict == Verdict::Safe;
     }
     let rows = database.turn_rows(id, policy).unwrap().map(|row| row.unwrap());
     let main = |edge: u32| network.road(&network.edges[edge as usize]).class <= RoadClass::Tertiary;
     let wanted = |row: &TurnRow| {
-        let ends = [edges[&row.from_edge], edges[&row.to_edge]];
+        let ends = [edges[&row.turn.from_edge], edges[&row.turn.to_edge]];
         let turns = row.arcs.is_none() && row.restriction.is_none() && ANGLES_DEG.contains(&row.angle_deg.abs());
         turns && ends.iter().all(|&edge| safe[edge as usize] && main(edge))
     };
     let mut rows: Vec<TurnRow> = rows.filter(wanted).collect();
     let all = rows.len();
     // Ids are hashes, so this is a fixed random choice.
-    rows.sort_by_key(|row| row.turn_id);
+    rows.sort_by_key(|row| row.turn.id);
     rows.truncate(count.parse().unwrap());
     let movements = network.movements();
     let tried = |row: TurnRow| {
-        let ends = [edges[&row.from_edge], edges[&row.to_edge]];
+        let ends = [edges[&row.turn.from_edge], edges[&row.turn.to_edge]];
         let beyond = movements.after(ends[0]).iter().any(|movement| movement.kind == MovementKind::StraightOn);
         let crossing = crossing(&network, ends, &row, beyond, policy)?;
-        Some(Tried { room_m: drivable(&crossing, &vehicle, row.turn_id as u64).room_m, row })
+        Some(Tried { room_m: drivable(&crossing, &vehicle, row.turn.id as u64).room_m, row })
     };
     let tried: Vec<Tried> = rows.into_par_iter().filter_map(tried).collect();
     println!("{file} {id}: {} of {all} turns of 60 to 105 degrees between safe main roads", tried.len());
@@ -81,10 +81,10 @@ fn main() {
         let rsc = row.certificate.rsc_m.map_or("none".to_owned(), |m| format!("{m:.2} m"));
         println!(
             "    {} ({:.0}°, {} into {}): {room_m:.2} m on the drawn crossing, RSC {rsc}",
-            row.turn_id,
+            row.turn.id,
             row.angle_deg,
-            row.from_name.as_deref().unwrap_or("?"),
-            row.to_name.as_deref().unwrap_or("?"),
+            row.turn.from_name.as_deref().unwrap_or("?"),
+            row.turn.to_name.as_deref().unwrap_or("?"),
         );
     }
 }

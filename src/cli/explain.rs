@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::{Args, ValueEnum};
-use netcert::explain::{self, Explanation, TurnExplanation};
+use netcert::explain::{self, Explanation, RoadFacts, TurnExplanation};
 use netcert::network::Network;
 use netcert::osm::facts::{Policy, highway};
 use netcert::picture;
@@ -100,7 +100,7 @@ impl Explain {
                         "{}: the certificate of edge {} for {} is not what this program computes: {detail}; it was made by \
                          another version: run `netcert certify --db {0} --vehicle {2} --corridor {}`",
                         path.display(),
-                        row.edge_id,
+                        row.edge.id,
                         self.vehicle.id,
                         settings.policy.name()
                     );
@@ -296,20 +296,20 @@ fn candidates(network: &Network, asked: &str) -> Vec<u32> {
 /// Prints the explanation in words for a terminal.
 pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::Result<()> {
     let words = explain::words(explanation);
-    if let Some(road) = &explanation.road {
+    if let Some(RoadFacts { edge, road, title, policy, .. }) = &explanation.road {
         let along = explanation.geometry.as_ref().map_or(String::new(), |g| format!(", {:.0} m", g.length_m()));
         writeln!(
             out,
             "{}, {}{along}, edge {} ({} along way {}, node {} to {})",
-            printable(&road.title),
+            printable(title),
             road.highway,
-            road.edge_id,
-            road.direction.name(),
-            road.way_id,
-            road.from_node,
-            road.to_node
+            edge.id,
+            edge.direction.name(),
+            edge.way_id,
+            edge.from_node,
+            edge.to_node
         )?;
-        writeln!(out, "{} {}, {} policy\n", explanation.vehicle.id, explanation.vehicle.name, road.policy.name())?;
+        writeln!(out, "{} {}, {} policy\n", explanation.vehicle.id, explanation.vehicle.name, policy.name())?;
     }
     for paragraph in std::iter::once(&words.headline).chain(&words.reasons) {
         writeln!(out, "{}", wrapped(paragraph, "  "))?;

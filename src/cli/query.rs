@@ -142,7 +142,7 @@ impl Query {
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
             let row = row?;
-            let relative = relative::beside(&mut beside, row.edge, &row.certificate)?;
+            let relative = relative::beside(&mut beside, row.edge.index, &row.certificate)?;
             if self.shows(relative) {
                 totals.add(&row, relative);
                 sink.row(&row, relative)?;
@@ -168,7 +168,7 @@ impl Query {
             TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle.id, policy) };
         let mut rows = Vec::new();
         for row in database.query_turns(&options)? {
-            let relative = relative::beside(&mut beside, row.turn, &row.certificate)?;
+            let relative = relative::beside(&mut beside, row.turn.index, &row.certificate)?;
             if self.shows(relative) {
                 rows.push((row, relative));
             }

@@ -34,11 +34,11 @@ impl Truth {
         let mut database = place.database();
         for row in database.query(&QueryOptions::new(vehicle, Policy::Carriageway)).unwrap().map(Result::unwrap) {
             let safe = row.certificate.verdict == Verdict::Safe;
-            if safe { &mut truth.edges } else { &mut truth.others }.insert(row.edge_id);
+            if safe { &mut truth.edges } else { &mut truth.others }.insert(row.edge.id);
         }
         for row in database.turn_rows(vehicle, Policy::Carriageway).unwrap().map(Result::unwrap) {
             let safe = row.certificate.verdict == Verdict::Safe;
-            if safe { &mut truth.turns } else { &mut truth.others }.insert(row.turn_id);
+            if safe { &mut truth.turns } else { &mut truth.others }.insert(row.turn.id);
         }
         assert!(truth.edges.len() > 20 && !truth.turns.is_empty() && truth.others.len() > 20);
         truth
@@ -244,7 +244,7 @@ fn rows_counts_and_explanations_claim_what_is_certified() {
         .unwrap()
         .map(Result::unwrap)
         .filter(|row| row.certificate.verdict != Verdict::Safe)
-        .map(|row| row.edge_id)
+        .map(|row| row.edge.id)
         .collect();
     for id in refused.iter().step_by(refused.len() / 3 + 1) {
         for format in ["json", "geojson"] {

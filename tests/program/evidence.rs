@@ -101,7 +101,7 @@ fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map(
         .shows("became safe");
     let now = edges_of(&place).into_iter().find(|row| row["edge_id"] == edge).unwrap();
     assert_eq!((&now["verdict"], &now["width_source"]), (&"safe".into(), &"surveyed".into()), "{now}");
-    let row = place.rows(VEHICLE).into_iter().find(|row| row.edge_id == edge).unwrap();
+    let row = place.rows(VEHICLE).into_iter().find(|row| row.edge.id == edge).unwrap();
     assert_eq!(row.width_source, Some(WidthSource::Surveyed));
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150 --input {{demo}}")).succeeds();
 

@@ -41,15 +41,15 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
         if row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && i % 6 != 0 {
             continue;
         }
-        let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
-        assert_eq!(e.disagreement(&row.certificate), None, "edge {}", row.edge_id);
+        let e = explain::explain_edge(&network, row.edge.index, &model, &settings(), &Stop::never()).unwrap().unwrap();
+        assert_eq!(e.disagreement(&row.certificate), None, "edge {}", row.edge.id);
         let seen = kinds.entry(verdict_words(row.certificate.verdict)).or_default();
         *seen += 1;
         let words = explain::words(&e);
         assert!(
             words.headline.starts_with(verdict_words(row.certificate.verdict).0),
             "{}: {}",
-            row.edge_id,
+            row.edge.id,
             words.headline
         );
         assert!(words.scope.contains("holds within the model") && words.scope.contains("no permit"));
@@ -58,7 +58,7 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
             let kept = row.certificate.limiting_s_m.unwrap_or(found);
             // The database stores the foot of the unit's axis, up to three stations beyond the edge. The explanation has the foot
             // of the corner, on the edge.
-            assert!((kept - found).abs() < 4.5, "{}: {kept} and {found}", row.edge_id);
+            assert!((kept - found).abs() < 4.5, "{}: {kept} and {found}", row.edge.id);
             assert!(match g.result.rsc_m.zip(g.place.bounds_m) {
                 Some((rsc_m, bounds_m)) => (g.place.nominal_m - bounds_m - rsc_m).abs() < 1e-9 || bounds_m == 0.0,
                 None => g.place.bounds_m.is_none(),
@@ -82,7 +82,7 @@ fn a_certificate_of_another_version_is_noticed() {
     let (network, rows) = demo(&place, "AU-SEMI19");
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let row = rows.iter().find(|row| row.certificate.verdict == Verdict::Safe).unwrap();
-    let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
+    let e = explain::explain_edge(&network, row.edge.index, &model, &settings(), &Stop::never()).unwrap().unwrap();
     let other = |change: &dyn Fn(&mut CertificateRow)| {
         let mut row = row.certificate;
         change(&mut row);
@@ -131,11 +131,12 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
         let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
         let unsafe_ones = rows.iter().filter(|row| row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width));
         for row in unsafe_ones.step_by(17) {
-            let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
+            let e =
+                explain::explain_edge(&network, row.edge.index, &model, &settings(), &Stop::never()).unwrap().unwrap();
             let Some(hint) = e.hints.width else { continue };
-            let with = certified(&network, row.edge, &vehicle, hint.width_m);
-            let less = certified(&network, row.edge, &vehicle, hint.width_m - 0.01);
-            assert!(with.safe() && !less.safe(), "{}: {hint:?}", row.edge_id);
+            let with = certified(&network, row.edge.index, &vehicle, hint.width_m);
+            let less = certified(&network, row.edge.index, &vehicle, hint.width_m - 0.01);
+            assert!(with.safe() && !less.safe(), "{}: {hint:?}", row.edge.id);
             assert_eq!(with.shrink, hint.shrink);
             let words = explain::words(&e).hints.join(" ");
             assert!(words.contains(&format!("lane of at least {:.2} m would do", hint.width_m)), "{words}");
@@ -295,7 +296,7 @@ fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
     for (reason, tag, has) in expected {
         let row = rows.iter().find(|row| verdict_words(row.certificate.verdict) == ("forbidden", reason)).unwrap();
         let headline = explain::words(
-            &explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap(),
+            &explain::explain_edge(&network, row.edge.index, &model, &settings(), &Stop::never()).unwrap().unwrap(),
         )
         .headline;
         assert!(headline.starts_with("forbidden: ") && headline.contains(tag) && headline.contains(has), "{headline}");
@@ -308,9 +309,9 @@ fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
     let (_, rows) = demo(&place, "AU-ATRIPLE53");
     let row = rows
         .iter()
-        .find(|row| row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && row.name.is_some())
+        .find(|row| row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && row.road.name.is_some())
         .unwrap();
-    let line = format!("explain {} --vehicle AU-ATRIPLE53", row.edge_id);
+    let line = format!("explain {} --vehicle AU-ATRIPLE53", row.edge.id);
     let missing = (-row.certificate.rsc_m.unwrap() * 100.0 - 0.11).ceil() / 100.0;
     place
         .netcert(&line)
@@ -331,18 +332,18 @@ fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
 
     let json = place.netcert(&format!("{line} --format json")).succeeds().json();
     assert_eq!(json["verdict"], "unsafe");
-    assert_eq!(json["road"]["edge_id"], row.edge_id.to_string());
+    assert_eq!(json["road"]["edge_id"], row.edge.id.to_string());
     assert!((json["limiting"]["rsc_m"].as_f64().unwrap() - row.certificate.rsc_m.unwrap()).abs() < 0.0011);
     assert_eq!(json["limiting"]["place"]["units"].as_array().unwrap().len(), 6);
 
-    let way = format!("explain {} --vehicle AU-ATRIPLE53", row.way_id);
-    let by_way = rows.iter().filter(|other| other.way_id == row.way_id).count();
+    let way = format!("explain {} --vehicle AU-ATRIPLE53", row.edge.way_id);
+    let by_way = rows.iter().filter(|other| other.edge.way_id == row.edge.way_id).count();
     assert!(by_way > 1);
-    place.netcert(&way).fails().tells(&format!("is {by_way} edges")).tells(&row.edge_id.to_string());
+    place.netcert(&way).fails().tells(&format!("is {by_way} edges")).tells(&row.edge.id.to_string());
     place.netcert("explain saltbush --vehicle AU-ATRIPLE53").fails().tells("M9 Saltbush Motorway");
     place.netcert("explain nowhere --vehicle AU-ATRIPLE53").fails().tells("no edge, way or road");
     // A vehicle that is not certified here is explained, too, with a message.
-    let other = format!("explain {} --vehicle EU-SEMI16.5", row.edge_id);
+    let other = format!("explain {} --vehicle EU-SEMI16.5", row.edge.id);
     place.netcert(&other).succeeds().tells("is not certified in demo.gpkg").shows("holds within the model");
 }
 

@@ -34,7 +34,7 @@ fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
 fn permitted(place: &WorkFolder) -> (Network, BTreeSet<u32>) {
     let mut database = place.database();
     let options = QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("AU-SEMI19", Policy::Lane) };
-    let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge).collect();
+    let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge.index).collect();
     (database.load_network().unwrap(), safe)
 }
 

@@ -15,7 +15,7 @@ const VEHICLE: &str = "AU-SEMI19";
 /// The drawn region with three measurements that count, of two sources, and one that does not.
 fn measured() -> WorkFolder {
     let place = WorkFolder::with_demo();
-    let edges: Vec<i64> = place.rows(VEHICLE).iter().map(|row| row.edge_id).take(3).collect();
+    let edges: Vec<i64> = place.rows(VEHICLE).iter().map(|row| row.edge.id).take(3).collect();
     let mut text = "quantity,value,sigma,edge_id,vehicle,source,date,licence\n".to_owned();
     for (edge, source, date, licence) in [
         (edges[0], "laser", "2026-03-01", "ODbL-1.0"),

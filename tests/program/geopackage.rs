@@ -134,12 +134,15 @@ fn a_query_gives_every_certificate_back_on_the_safe_side() {
         let (edge, wrote) = (&network.edges[index as usize], certificate(index, 1));
         let road = network.road(edge);
         assert_eq!(
-            (row.edge, row.edge_id, row.way_id, row.certificate.verdict),
+            (row.edge.index, row.edge.id, row.edge.way_id, row.certificate.verdict),
             (index, edge.id, road.way_id, wrote.conclusion.verdict)
         );
         let limit = network.road(edge).max_speed_km_h[edge.direction as usize];
         assert_eq!(row.maxspeed_kmh, limit.map(std::num::NonZeroU8::get));
-        assert_eq!((row.from_node, row.to_node, row.direction), (edge.from_node, edge.to_node, edge.direction));
+        assert_eq!(
+            (row.edge.from_node, row.edge.to_node, row.edge.direction),
+            (edge.from_node, edge.to_node, edge.direction)
+        );
         assert!(row.line.iter().copied().eq(network.positions(edge)));
         let lane = road.sections[edge.direction as usize].lane;
         assert_eq!(row.width_source, lane.map(|strip| strip.source));
@@ -175,7 +178,7 @@ fn every_filter_gives_what_a_plain_search_through_all_rows_gives() {
     }
     check(&|o| o.min_rsc_m = Some(0.3), &|row| row.certificate.rsc_m.is_some_and(|rsc| rsc >= 0.3));
     check(&|o| o.min_width_source = Some(WidthSource::Tagged), &|row| row.width_source >= Some(WidthSource::Tagged));
-    check(&|o| o.edge_id = Some(every[7].edge_id), &|row| row.edge_id == every[7].edge_id);
+    check(&|o| o.edge_id = Some(every[7].edge.id), &|row| row.edge.id == every[7].edge.id);
     // A triangle is smaller than its box, so the index alone would give too many rows.
     let triangle = geo::Triangle::new((8.6, 49.4).into(), (8.75, 49.4).into(), (8.6, 49.55).into()).to_polygon();
     let area = geo::MultiPolygon(vec![triangle]);

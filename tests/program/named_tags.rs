@@ -97,9 +97,9 @@ fn explain_names_the_tag_and_its_value() {
     let rows = place.rows("EU-SEMI16.5");
     let mut wrong = Vec::new();
     for (way, Case(of_way, of_node, tag, verdict)) in (1_i64..).zip(&CASES) {
-        let row = rows.iter().find(|row| row.way_id == way);
+        let row = rows.iter().find(|row| row.edge.way_id == way);
         let Some(row) = row else { panic!("no edge of {of_way:?}") };
-        let explain = format!("explain {} --vehicle EU-SEMI16.5", row.edge_id);
+        let explain = format!("explain {} --vehicle EU-SEMI16.5", row.edge.id);
         let told = place.netcert(&explain).succeeds().out();
         let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
         let (verdict_is, reason) = verdict_words(row.certificate.verdict);

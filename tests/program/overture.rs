@@ -358,15 +358,16 @@ fn the_verbs_work_on_such_a_database_or_refuse_in_words() {
     let stats = place.netcert("stats --db release.gpkg").succeeds();
     stats.shows("ingest of release").shows("transition_off_road");
     let rows = by_line(&place.path("release.gpkg"), "AU-ATRIPLE53");
-    let long = |row: &&EdgeRow| row.name.is_some();
+    let long = |row: &&EdgeRow| row.road.name.is_some();
     let forbidden = Verdict::Forbidden(ForbiddenReason::Length);
     assert!(
         rows.values().filter(long).count() > 4
             && rows.values().filter(long).all(|row| row.certificate.verdict == forbidden)
     );
     place.netcert("verify --db release.gpkg").succeeds();
-    let edge = by_line(&place.path("release.gpkg"), "AU-SEMI19").into_values().find(|row| row.name.is_some()).unwrap();
-    place.netcert(&format!("explain {} --db release.gpkg --vehicle AU-SEMI19", edge.edge_id)).succeeds();
+    let edge =
+        by_line(&place.path("release.gpkg"), "AU-SEMI19").into_values().find(|row| row.road.name.is_some()).unwrap();
+    place.netcert(&format!("explain {} --db release.gpkg --vehicle AU-SEMI19", edge.edge.id)).succeeds();
     place.netcert("cells release --out tasks").succeeds();
     let changes =
         "<osmChange version=\"0.6\"><modify><node id=\"1\" version=\"2\" lat=\"1\" lon=\"1\"/></modify></osmChange>";
@@ -531,28 +532,40 @@ fn round_trip(place: &WorkFolder, made: &str) -> [BTreeMap<Vec<[i32; 2]>, EdgeRo
 /// is forbidden.
 fn assert_same_network([ours, again]: &[BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2], permitted: &BTreeSet<i64>) {
     let mut closed = 0;
-    for (line, row) in ours.iter().filter(|(_, row)| row.highway != "busway") {
-        let back = again.get(line).unwrap_or_else(|| panic!("{} of way {} is missing", row.edge_id, row.way_id));
-        assert_eq!((&back.highway, &back.name, back.direction), (&row.highway, &row.name, row.direction));
-        assert_eq!(back.reference, row.reference);
-        assert_eq!((back.from_node, back.to_node, back.maxspeed_kmh), (row.from_node, row.to_node, row.maxspeed_kmh));
+    for (line, row) in ours.iter().filter(|(_, row)| row.road.highway != "busway") {
+        let back = again.get(line).unwrap_or_else(|| panic!("{} of way {} is missing", row.edge.id, row.edge.way_id));
+        assert_eq!(
+            (&back.road.highway, &back.road.name, back.edge.direction),
+            (&row.road.highway, &row.road.name, row.edge.direction)
+        );
+        assert_eq!(back.road.reference, row.road.reference);
+        assert_eq!(
+            (back.edge.from_node, back.edge.to_node, back.maxspeed_kmh),
+            (row.edge.from_node, row.edge.to_node, row.maxspeed_kmh)
+        );
         match row.width_source {
             Some(WidthSource::Tagged | WidthSource::Surveyed) => {
-                assert!((back.width_m.unwrap() - row.width_m.unwrap()).abs() < 2e-3, "way {}", row.way_id);
+                assert!((back.width_m.unwrap() - row.width_m.unwrap()).abs() < 2e-3, "way {}", row.edge.way_id);
             }
-            source => assert_ne!(back.width_source, Some(WidthSource::Tagged), "way {}: {source:?}", row.way_id),
+            source => assert_ne!(back.width_source, Some(WidthSource::Tagged), "way {}: {source:?}", row.edge.way_id),
         }
-        if !permitted.contains(&row.edge_id) {
-            assert_eq!(back.certificate.verdict, Verdict::Forbidden(ForbiddenReason::Length), "way {}", row.way_id);
+        if !permitted.contains(&row.edge.id) {
+            assert_eq!(
+                back.certificate.verdict,
+                Verdict::Forbidden(ForbiddenReason::Length),
+                "way {}",
+                row.edge.way_id
+            );
             closed += 1;
         } else {
-            assert!(!matches!(back.certificate.verdict, Verdict::Forbidden(_)), "way {}", row.way_id);
+            assert!(!matches!(back.certificate.verdict, Verdict::Forbidden(_)), "way {}", row.edge.way_id);
         }
     }
     assert!(closed > 0 && closed < ours.len());
-    let more: Vec<_> = again.iter().filter(|(line, _)| !ours.contains_key(*line)).map(|(_, row)| row.way_id).collect();
+    let more: Vec<_> =
+        again.iter().filter(|(line, _)| !ours.contains_key(*line)).map(|(_, row)| row.edge.way_id).collect();
     assert!(more.is_empty(), "{more:?}");
-    assert!(again.values().any(|row| row.direction == Direction::Backward));
+    assert!(again.values().any(|row| row.edge.direction == Direction::Backward));
 }
 
 fn permitted(place: &WorkFolder) -> BTreeSet<i64> {

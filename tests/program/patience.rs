@@ -22,7 +22,7 @@ fn work_without_patience_ends_as_unknown_and_is_made_up_for_later() {
     let patient = WorkFolder::empty();
     patient.netcert("ingest {demo} --vehicle AU-SEMI19").succeeds();
     let rows = |place: &WorkFolder| {
-        let edges = place.rows("AU-SEMI19").into_iter().map(|row| format!("{} {:?}", row.edge_id, row.certificate));
+        let edges = place.rows("AU-SEMI19").into_iter().map(|row| format!("{} {:?}", row.edge.id, row.certificate));
         let turns = place.netcert("query --vehicle AU-SEMI19 --turns --format csv").succeeds().out();
         (edges.collect::<Vec<_>>(), turns)
     };

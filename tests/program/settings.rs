@@ -52,7 +52,7 @@ fn rows(place: &WorkFolder, policy: Policy) -> Vec<EdgeRow> {
 
 /// What a certificate says; the columns of the road stay as `ingest` measured them.
 fn said(row: &EdgeRow) -> String {
-    format!("{} {:?}", row.edge_id, row.certificate)
+    format!("{} {:?}", row.edge.id, row.certificate)
 }
 
 /// A turn that the vehicle may take, and places on the edges before and after it.
@@ -61,11 +61,11 @@ fn corner(place: &WorkFolder, policy: Policy) -> Option<(i64, String)> {
     let turn = turns.into_iter().find(|turn| turn.certificate.verdict == Verdict::Safe)?;
     let rows = rows(place, policy);
     let middle = |id: i64| {
-        let line = &rows.iter().find(|row| row.edge_id == id).unwrap().line;
+        let line = &rows.iter().find(|row| row.edge.id == id).unwrap().line;
         let (lon, lat) = line[line.len() / 2].degrees();
         format!("{lon:.6},{lat:.6}")
     };
-    Some((turn.turn_id, format!("--from {} --to {}", middle(turn.from_edge), middle(turn.to_edge))))
+    Some((turn.turn.id, format!("--from {} --to {}", middle(turn.turn.from_edge), middle(turn.turn.to_edge))))
 }
 
 /// A file of tab-separated or comma-separated values without a column.
@@ -96,7 +96,7 @@ fn is_as_if_ingested_with(option: &str, policy: Policy) {
         .filter(|(now, before)| {
             said(now) != said(before) && now.certificate.rsc_m.is_some_and(|rsc_m| rsc_m.abs() < 3.0)
         })
-        .map(|(now, _)| now.edge_id)
+        .map(|(now, _)| now.edge.id)
         .collect();
     assert!(changed.len() > 3, "{option} changes {} certificates", changed.len());
 
@@ -215,7 +215,7 @@ fn a_new_set_has_the_settings_of_the_ingest() {
 #[test]
 fn settings_that_cannot_be_read_are_an_error_and_certify_is_the_way_out() {
     let place = base();
-    let edge = rows(&place, Policy::Carriageway)[0].edge_id;
+    let edge = rows(&place, Policy::Carriageway)[0].edge.id;
     let damages = [
         "json_remove(settings, '$.max_shift_m')",
         "json_set(settings, '$.max_sway_m', 1)",

@@ -27,7 +27,7 @@ fn a_lane_that_both_directions_share_is_told() {
         let column =
             sql(&place.path("demo.gpkg"), &format!("SELECT DISTINCT lane_shared FROM edge WHERE way_id = {way}"));
         assert_eq!(column.trim(), if shared { "1" } else { "0" }, "way {way}");
-        let edge = place.rows("EU-SEMI16.5").into_iter().find(|row| row.way_id == way).unwrap().edge_id;
+        let edge = place.rows("EU-SEMI16.5").into_iter().find(|row| row.edge.way_id == way).unwrap().edge.id;
         let explain = format!("explain {edge} --vehicle EU-SEMI16.5");
         let json = place.netcert(&format!("{explain} --format json")).succeeds().json();
         assert_eq!(json["road"]["lane_shared"], shared, "way {way}");
@@ -45,7 +45,7 @@ fn a_width_that_cannot_be_read_is_named() {
     let way = WayRecord { id: 1, refs: vec![1, 2], tags: tags.to_vec() };
     let place = WorkFolder::empty().file("width.osm.pbf", write_extract(&nodes, &[way]));
     place.netcert("ingest width.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
-    let edge = place.rows("EU-SEMI16.5")[0].edge_id;
+    let edge = place.rows("EU-SEMI16.5")[0].edge.id;
     place.netcert(&format!("explain {edge} --vehicle EU-SEMI16.5")).succeeds().shows("width=50 cannot be read");
     place.netcert("verify --db demo.gpkg").succeeds();
 }

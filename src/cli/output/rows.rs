@@ -98,7 +98,7 @@ impl<'h> Sink<'h> {
                 let coordinates: Vec<Value> = row.line.iter().map(|place| json!(place.degrees())).collect();
                 let feature = json!({
                     "type": "Feature",
-                    "id": row.edge_id.to_string(),
+                    "id": row.edge.id.to_string(),
                     "geometry": {"type": "LineString", "coordinates": coordinates},
                     "properties": self.members(row, relative),
                 });
@@ -125,15 +125,15 @@ impl<'h> Sink<'h> {
     fn line(&mut self, row: &EdgeRow, relative: Option<Relative>) -> io::Result<()> {
         let (verdict, reason) = verdict_words(row.certificate.verdict);
         let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
-        let road: Vec<&str> = [&row.reference, &row.name].into_iter().flatten().map(String::as_str).collect();
+        let road: Vec<&str> = [&row.road.reference, &row.road.name].into_iter().flatten().map(String::as_str).collect();
         let (metres, degrees) = (|m: f64| format!("{m:.2} m"), |d: f64| format!("{d:.1}°"));
         writeln!(
             self.out,
             "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} {}{}",
-            row.edge_id,
-            row.way_id,
-            row.direction.name(),
-            row.highway,
+            row.edge.id,
+            row.edge.way_id,
+            row.edge.direction.name(),
+            row.road.highway,
             format!("{:.0} m", row.length_m),
             row.width_m.map_or(String::new(), metres),
             row.width_source.map_or("", WidthSource::name),

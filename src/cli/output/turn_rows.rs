@@ -45,7 +45,7 @@ pub(crate) fn write(format: Format, head: &Head, rows: &[Row], out: &mut dyn Wri
                 let coordinates: Vec<Value> = row.0.line.iter().map(|place| json!(place.degrees())).collect();
                 json!({
                     "type": "Feature",
-                    "id": row.0.turn_id.to_string(),
+                    "id": row.0.turn.id.to_string(),
                     "geometry": {"type": "LineString", "coordinates": coordinates},
                     "properties": members(head, row),
                 })
@@ -83,7 +83,7 @@ fn table(head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
         writeln!(
             out,
             "{:>19}  {:>11} {:<12} {:>5.0}°  {:>6}  {:>7}  {:>7}  {:<22} {}{} → {}",
-            row.turn_id,
+            row.turn.id,
             row.via_node,
             row.kind,
             row.angle_deg,
@@ -92,8 +92,8 @@ fn table(head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
             row.certificate.hinge_angle_deg().map_or(String::new(), |d| format!("{d:.1}°")),
             verdict,
             head.cells(row.need_kerb_radius_m, *relative),
-            name(&row.from_name),
-            name(&row.to_name),
+            name(&row.turn.from_name),
+            name(&row.turn.to_name),
         )?;
     }
     Ok(())

@@ -65,10 +65,10 @@ fn vehicles_are_the_databases_and_drawn() {
 fn an_edge_is_its_row() {
     let server = Server::demo();
     for row in server.place.rows(VEHICLE).iter().step_by(17) {
-        let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}&policy=lane", row.edge_id));
-        assert_eq!(edge["edge_id"], row.edge_id.to_string());
-        assert_eq!(edge["way_id"], row.way_id.to_string());
-        assert_eq!(edge["highway"], json!(row.highway));
+        let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}&policy=lane", row.edge.id));
+        assert_eq!(edge["edge_id"], row.edge.id.to_string());
+        assert_eq!(edge["way_id"], row.edge.way_id.to_string());
+        assert_eq!(edge["highway"], json!(row.road.highway));
         assert_eq!(edge["length_m"], json!(row.length_m));
         assert_eq!(edge["maxspeed_kmh"], json!(row.maxspeed_kmh));
         assert_eq!(edge["widths"]["lane"]["width_m"], json!(row.width_m));
@@ -96,7 +96,7 @@ fn an_explanation_is_that_of_the_verb() {
         rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "forbidden").unwrap(),
     ];
     for row in wanted {
-        let id = row.edge_id;
+        let id = row.edge.id;
         let line = format!("explain {id} --db demo.gpkg --vehicle {VEHICLE} --format json");
         let said = server.place.netcert(&line).succeeds().json();
         let answer = server.json(&format!("/api/explain/{id}?vehicle={VEHICLE}"));
@@ -112,7 +112,7 @@ fn an_explanation_is_that_of_the_verb() {
             server.problem(&target, 404);
         }
     }
-    let turns = |row: &EdgeRow| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge_id))["turns"].clone();
+    let turns = |row: &EdgeRow| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge.id))["turns"].clone();
     let turn = rows.iter().map(turns).find_map(|turns| turns.get(0).cloned()).unwrap();
     let id = turn["turn_id"].as_str().unwrap();
     let answer = server.json(&format!("/api/explain/{id}?vehicle={VEHICLE}"));
@@ -152,10 +152,10 @@ fn the_shapes_of_an_explanation_are_those_of_the_verb() {
     let mut ids: Vec<String> = Vec::new();
     for wanted in ["safe", "unsafe", "forbidden"] {
         let row = rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == wanted).unwrap();
-        ids.push(row.edge_id.to_string());
+        ids.push(row.edge.id.to_string());
     }
     let turns =
-        rows.iter().map(|row| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge_id))["turns"].clone());
+        rows.iter().map(|row| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge.id))["turns"].clone());
     let turns: Vec<Value> = turns.take(12).flat_map(|turns| turns.as_array().unwrap().clone()).collect();
     ids.extend(turns.iter().step_by(4).map(|turn| turn["turn_id"].as_str().unwrap().to_owned()));
     // The demo region has nothing unknown.
@@ -163,7 +163,7 @@ fn the_shapes_of_an_explanation_are_those_of_the_verb() {
     let unknown = |row: &&EdgeRow| verdict_words(row.certificate.verdict).0 == "unknown";
     let set = QueryOptions::new(VEHICLE, Policy::Carriageway);
     let rows: Vec<EdgeRow> = drawn.place.database().query(&set).unwrap().map(Result::unwrap).collect();
-    let unknown_id = rows.iter().find(unknown).unwrap().edge_id.to_string();
+    let unknown_id = rows.iter().find(unknown).unwrap().edge.id.to_string();
     let asked = ids.iter().map(|id| (&server, id, "lane")).chain([(&drawn, &unknown_id, "carriageway")]);
     let mut parts = std::collections::BTreeSet::new();
     for (server, id, policy) in asked {

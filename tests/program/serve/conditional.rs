@@ -164,13 +164,13 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
     let mut opened = 0;
     for row in narrow {
         assert_eq!(row.certificate.verdict, Verdict::Unsafe(UnsafeReason::Width));
-        let slider = &server.json(&format!("/api/explain/{}?vehicle={VEHICLE}", row.edge_id))["suppose"];
+        let slider = &server.json(&format!("/api/explain/{}?vehicle={VEHICLE}", row.edge.id))["suppose"];
         let number = |name: &str| slider[name].as_f64().unwrap();
         // The database has an estimate. The width above the slider was certified.
         let need_m = number("need");
         let estimate_m = row.need_width_m.unwrap();
         assert!((need_m - estimate_m).abs() < 0.5, "{need_m} {estimate_m}");
-        let met = of(row.edge_id, need_m);
+        let met = of(row.edge.id, need_m);
         is_no_certificate(&met);
         assert_eq!(
             (&met["enough"], &met["verdict"], &met["need"]),
@@ -179,11 +179,11 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
         assert!(met["rsc_m"].as_f64().unwrap() >= 0.0);
         for other in met["opens"].as_array().unwrap() {
             let id: i64 = other["edge_id"].as_str().unwrap().parse().unwrap();
-            let known = rows.iter().find(|row| row.edge_id == id).unwrap();
-            assert!(matches!(known.certificate.verdict, Verdict::Unsafe(_)) && id != row.edge_id);
+            let known = rows.iter().find(|row| row.edge.id == id).unwrap();
+            assert!(matches!(known.certificate.verdict, Verdict::Unsafe(_)) && id != row.edge.id);
             opened += 1;
         }
-        let as_it_is = of(row.edge_id, 0.0);
+        let as_it_is = of(row.edge.id, 0.0);
         is_no_certificate(&as_it_is);
         assert_eq!((&as_it_is["enough"], &as_it_is["verdict"]), (&json!(false), &json!("unsafe")));
         assert!((as_it_is["rsc_m"].as_f64().unwrap() - row.certificate.rsc_m.unwrap()).abs() < 2e-3);
@@ -192,9 +192,9 @@ fn an_edge_that_lacks_room_would_do_with_its_need_and_not_as_it_is() {
     }
     assert!(opened > 0, "no supposition opens another edge");
     let forbidden = rows.iter().find(|row| matches!(row.certificate.verdict, Verdict::Forbidden(_))).unwrap();
-    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}&metres=9", forbidden.edge_id), 404);
-    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}", rows[0].edge_id), 400);
-    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}&metres=NaN", rows[0].edge_id), 400);
+    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}&metres=9", forbidden.edge.id), 404);
+    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}", rows[0].edge.id), 400);
+    server.problem(&format!("/api/suppose/{}?vehicle={VEHICLE}&metres=NaN", rows[0].edge.id), 400);
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_turn_would_do_with_the_radius_that_it_needs() {
     let sharp: Vec<_> = turns.iter().filter(|turn| turn.need_kerb_radius_m.is_some()).step_by(7).take(4).collect();
     assert!(!sharp.is_empty());
     for turn in sharp {
-        let (id, need_m) = (turn.turn_id, turn.need_kerb_radius_m.unwrap());
+        let (id, need_m) = (turn.turn.id, turn.need_kerb_radius_m.unwrap());
         let of = |metres: f64| server.json(&format!("/api/suppose/{id}?vehicle={SHORT}&metres={metres}"));
         let met = of(need_m);
         is_no_certificate(&met);
@@ -219,5 +219,5 @@ fn a_turn_would_do_with_the_radius_that_it_needs() {
         assert_eq!(as_it_is["enough"], false);
         assert_eq!(server.json(&format!("/api/explain/{id}?vehicle={SHORT}"))["suppose"]["need"], json!(need_m));
     }
-    server.problem(&format!("/api/suppose/{}?vehicle={SHORT}&metres=26", turns[0].turn_id), 400);
+    server.problem(&format!("/api/suppose/{}?vehicle={SHORT}&metres=26", turns[0].turn.id), 400);
 }

@@ -62,12 +62,12 @@ fn wide_for(vehicle: &str) -> (WorkFolder, Database, Network, Model, Settings) {
 fn round_corners(database: &mut Database, policy: Policy) -> Vec<[Position; 2]> {
     let rows = database.query(&QueryOptions::new(VEHICLE, policy)).unwrap().map(Result::unwrap);
     let middles: BTreeMap<i64, Position> = rows
-        .map(|row| (row.edge_id, row.line[row.line.len() / 2].degrees()))
+        .map(|row| (row.edge.id, row.line[row.line.len() / 2].degrees()))
         .map(|(edge, (lon, lat))| (edge, Position { lon, lat }))
         .collect();
     let turns = database.query_turns(&TurnQuery::new(VEHICLE, policy)).unwrap().into_iter();
     let safe = turns.filter(|turn| turn.certificate.verdict == Verdict::Safe);
-    safe.map(|turn| [middles[&turn.from_edge], middles[&turn.to_edge]]).collect()
+    safe.map(|turn| [middles[&turn.turn.from_edge], middles[&turn.turn.to_edge]]).collect()
 }
 
 fn on_the_road(

@@ -159,15 +159,15 @@ fn asked(server: &Server) -> Vec<(String, String)> {
             continue;
         }
         seen.push(words);
-        let id = row.edge_id;
+        let id = row.edge.id;
         add("/api/edges/{id}", format!("/api/edges/{id}?vehicle={VEHICLE}"));
         add("/api/explain/{id}", format!("/api/explain/{id}?vehicle={VEHICLE}"));
         add("/api/explain/{id}/map.geojson", format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}"));
     }
     let safe =
         rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "safe" && row.length_m > 100.0).unwrap();
-    add("/api/explain/{id}/picture.svg", format!("/api/explain/{}/picture.svg?vehicle={VEHICLE}", safe.edge_id));
-    let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", safe.edge_id));
+    add("/api/explain/{id}/picture.svg", format!("/api/explain/{}/picture.svg?vehicle={VEHICLE}", safe.edge.id));
+    let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", safe.edge.id));
     for turn in edge["turns"].as_array().unwrap() {
         let id = turn["turn_id"].as_str().unwrap();
         add("/api/explain/{id}", format!("/api/explain/{id}?vehicle={VEHICLE}"));
@@ -194,9 +194,9 @@ fn asked(server: &Server) -> Vec<(String, String)> {
     add("/api/search", "/api/search?q=a".to_owned());
     add("/api/search", format!("/api/search?q=road&vehicle={VEHICLE}"));
     add("/api/search", "/api/search?q=-30.2,126.03".to_owned());
-    add("/api/road", format!("/api/road?way={}&vehicle={VEHICLE}", safe.way_id));
-    add("/api/road", format!("/api/road?way={}", safe.way_id));
-    add("/api/search", format!("/api/search?q={}", safe.edge_id));
+    add("/api/road", format!("/api/road?way={}&vehicle={VEHICLE}", safe.edge.way_id));
+    add("/api/road", format!("/api/road?way={}", safe.edge.way_id));
+    add("/api/search", format!("/api/search?q={}", safe.edge.id));
     add("/backdrop/{z}/{x}/{y}.mvt", "/backdrop/0/0/0.mvt".to_owned());
     add("/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt", format!("/tiles/lane/{VEHICLE}/0/0/0.mvt"));
     asked

@@ -26,8 +26,8 @@ fn with_real_ids(document: &mut Value, server: &Server) {
             format!("{lon:.7},{lat:.7}")
         })
         .collect();
-    let ids: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.edge_id.to_string()).collect();
-    let ways: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.way_id.to_string()).collect();
+    let ids: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.edge.id.to_string()).collect();
+    let ways: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.edge.way_id.to_string()).collect();
     document["components"]["schemas"]["PlaceText"] = json!({"type": "string", "enum": places});
     let real = |name: &str, path: &str| match name {
         "vehicle" | "relative_to" => Some(json!([VEHICLE, "AU-ATRIPLE53"])),

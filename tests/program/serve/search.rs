@@ -16,12 +16,12 @@ fn found(server: &Server, asked: &str) -> Value {
 fn a_search_finds_edges_ways_names_and_places() {
     let server = Server::demo();
     let rows = server.place.rows(VEHICLE);
-    let row = rows.iter().find(|row| row.name.is_some()).unwrap();
-    let edge = &found(&server, &row.edge_id.to_string())[0];
-    assert_eq!((edge["kind"].as_str(), edge["id"].as_str()), (Some("edge"), Some(row.edge_id.to_string().as_str())));
-    let way = &found(&server, &row.way_id.to_string())[0];
-    assert_eq!((way["kind"].as_str(), way["id"].as_str()), (Some("way"), Some(row.way_id.to_string().as_str())));
-    let name = row.name.clone().unwrap();
+    let row = rows.iter().find(|row| row.road.name.is_some()).unwrap();
+    let edge = &found(&server, &row.edge.id.to_string())[0];
+    assert_eq!((edge["kind"].as_str(), edge["id"].as_str()), (Some("edge"), Some(row.edge.id.to_string().as_str())));
+    let way = &found(&server, &row.edge.way_id.to_string())[0];
+    assert_eq!((way["kind"].as_str(), way["id"].as_str()), (Some("way"), Some(row.edge.way_id.to_string().as_str())));
+    let name = row.road.name.clone().unwrap();
     let whole = &found(&server, &name.to_uppercase())[0];
     assert_eq!((&whole["kind"], &whole["name"]), (&json!("road"), &json!(name)), "{whole}");
     let bbox: Vec<f64> = serde_json::from_value(whole["bbox"].clone()).unwrap();
@@ -51,7 +51,7 @@ fn a_road_is_whole_and_its_summary_is_that_of_its_pieces() {
     let server = Server::demo();
     let rows = server.place.rows(VEHICLE);
     let mut asked = 0;
-    for name in rows.iter().filter_map(|row| row.name.as_deref()).step_by(7).take(12) {
+    for name in rows.iter().filter_map(|row| row.road.name.as_deref()).step_by(7).take(12) {
         let hits = found(&server, name);
         let Some(hit) = hits.as_array().unwrap().iter().find(|hit| hit["name"] == json!(name)) else { continue };
         let by_ref = hit["by_ref"].as_str().map_or(String::new(), |text| format!("&ref={}", text.replace(' ', "%20")));
@@ -68,8 +68,8 @@ fn a_road_is_whole_and_its_summary_is_that_of_its_pieces() {
         let mut least: Option<f64> = None;
         for feature in features {
             let id = feature["id"].as_str().unwrap();
-            let row = rows.iter().find(|row| row.edge_id.to_string() == id).unwrap();
-            assert_eq!(row.name.as_deref(), Some(name), "{target}");
+            let row = rows.iter().find(|row| row.edge.id.to_string() == id).unwrap();
+            assert_eq!(row.road.name.as_deref(), Some(name), "{target}");
             assert_eq!(feature["properties"]["rsc_m"], json!(row.certificate.rsc_m));
             assert_eq!(feature["geometry"]["coordinates"].as_array().unwrap().len(), row.line.len());
             least = row.certificate.rsc_m.into_iter().chain(least).min_by(f64::total_cmp);

@@ -109,17 +109,18 @@ fn every_edge_is_in_the_tiles_of_its_vertices_with_the_numbers_of_query() {
         for row in &rows {
             for position in &row.line {
                 let [x, y] = at(z, position.degrees());
-                let found = by_tile[&(x as u32, y as u32)].iter().find(|feature| feature.id == u64::from(row.edge) + 1);
+                let found =
+                    by_tile[&(x as u32, y as u32)].iter().find(|feature| feature.id == u64::from(row.edge.index) + 1);
                 let Some(feature) = found else {
                     // Left out only what is smaller than the raster.
-                    assert!(row.length_m < 3.0 && z < 16, "zoom {z}, edge {}, {} m", row.edge_id, row.length_m);
+                    assert!(row.length_m < 3.0 && z < 16, "zoom {z}, edge {}, {} m", row.edge.id, row.length_m);
                     continue;
                 };
                 matches_row(feature, row);
                 // The vertex is on the drawn line, to the tolerance of two units and rounding.
                 let unit = [(x - x.floor()) * 4096.0, (y - y.floor()) * 4096.0];
                 let near = feature.away(unit);
-                assert!(near < 3.0, "zoom {z}, edge {}: {near} units off", row.edge_id);
+                assert!(near < 3.0, "zoom {z}, edge {}: {near} units off", row.edge.id);
             }
         }
     }
@@ -128,16 +129,16 @@ fn every_edge_is_in_the_tiles_of_its_vertices_with_the_numbers_of_query() {
 fn matches_row(feature: &Feature, row: &EdgeRow) {
     let tag = |name: &str| feature.tags.get(name).map(String::as_str);
     let (verdict, reason) = verdict_words(row.certificate.verdict);
-    assert_eq!(tag("edge_id"), Some(row.edge_id.to_string().as_str()));
-    assert_eq!(tag("way_id"), Some(row.way_id.to_string().as_str()));
-    assert_eq!(tag("highway"), Some(row.highway.as_str()));
+    assert_eq!(tag("edge_id"), Some(row.edge.id.to_string().as_str()));
+    assert_eq!(tag("way_id"), Some(row.edge.way_id.to_string().as_str()));
+    assert_eq!(tag("highway"), Some(row.road.highway.as_str()));
     assert_eq!((tag("verdict"), tag("reason")), (Some(verdict), Some(reason).filter(|reason| !reason.is_empty())));
-    assert_eq!(tag("direction"), Some(row.direction.name()));
-    assert_eq!((tag("name"), tag("ref")), (row.name.as_deref(), row.reference.as_deref()));
+    assert_eq!(tag("direction"), Some(row.edge.direction.name()));
+    assert_eq!((tag("name"), tag("ref")), (row.road.name.as_deref(), row.road.reference.as_deref()));
     assert_eq!(tag("rsc_m").map(|text| text.parse().unwrap()), row.certificate.rsc_m, "exactly as kept");
     assert_eq!(tag("width_source"), row.width_source.map(Named::name));
     let need_m = tag("need_width_m").map(|shown| shown.parse::<f64>().unwrap());
-    assert_eq!(need_m, row.need_width_m, "{}", row.edge_id);
+    assert_eq!(need_m, row.need_width_m, "{}", row.edge.id);
     if let Some(width_m) = row.width_m {
         let shown: f64 = tag("width_m").unwrap().parse().unwrap();
         assert!(shown <= width_m && width_m - shown < 0.0101, "{shown} {width_m}");
@@ -197,8 +198,8 @@ fn turns_are_in_the_tiles_from_zoom_15_on() {
     }
     assert_eq!(seen.len(), turns.len());
     for turn in turns {
-        let tags = &seen[&turn.turn_id.to_string()];
-        assert_eq!(tags["from_edge"], turn.from_edge.to_string());
+        let tags = &seen[&turn.turn.id.to_string()];
+        assert_eq!(tags["from_edge"], turn.turn.from_edge.to_string());
         assert_eq!(tags["verdict"], verdict_words(turn.certificate.verdict).0);
         assert_eq!(tags.get("rsc_m").map(|text| text.parse().unwrap()), turn.certificate.rsc_m);
     }
@@ -230,19 +231,20 @@ fn from_afar_nothing_is_drawn_as_certified_that_is_not() {
     for (z, shown) in [(6, 2), (8, 3), (9, 4), (10, 5)] {
         let by_tile: BTreeMap<(u32, u32), Vec<Feature>> =
             tiles(&rows, z).into_iter().map(|tile| (tile, fetch(&server, z, tile, "overview"))).collect();
-        for row in rows.iter().filter(|row| classes[..shown].contains(&row.highway.as_str())) {
+        for row in rows.iter().filter(|row| classes[..shown].contains(&row.road.highway.as_str())) {
             let (verdict, _) = verdict_words(row.certificate.verdict);
             barred += usize::from(verdict != "safe");
             for position in &row.line {
                 let [x, y] = at(z, position.degrees());
                 let unit = [(x - x.floor()) * 1024.0, (y - y.floor()) * 1024.0];
                 let fits = |feature: &&Feature| {
-                    feature.tags["highway"] == row.highway && (verdict == "safe" || feature.tags["verdict"] != "safe")
+                    feature.tags["highway"] == row.road.highway
+                        && (verdict == "safe" || feature.tags["verdict"] != "safe")
                 };
                 let of_class = by_tile[&(x as u32, y as u32)].iter().filter(fits);
                 let near = of_class.map(|feature| feature.away(unit)).fold(f64::MAX, f64::min);
                 let short = verdict == "safe" && row.length_m < 1000.0;
-                assert!(near < 2.0 || short, "zoom {z}, edge {}, {verdict}: {near} units off", row.edge_id);
+                assert!(near < 2.0 || short, "zoom {z}, edge {}, {verdict}: {near} units off", row.edge.id);
             }
         }
         for feature in by_tile.values().flatten() {
@@ -259,7 +261,7 @@ fn where_a_region_has_both_sides_every_edge_says_on_which_it_is_driven() {
     let rows = server.place.rows(VEHICLE);
     let tile = *tiles(&rows, 13).iter().next().unwrap();
     assert!(fetch(&server, 13, tile, "edge").iter().all(|feature| !feature.tags.contains_key("left")));
-    let way = rows.iter().find(|row| !row.line.is_empty()).unwrap().way_id;
+    let way = rows.iter().find(|row| !row.line.is_empty()).unwrap().edge.way_id;
     let other_side = format!("UPDATE road SET left_hand_traffic = NOT left_hand_traffic WHERE way_id = {way}");
     assert!(server.place.sql(&other_side) > 0);
     let most = server.json("/api/region")["left_hand_traffic"].as_bool().unwrap();
