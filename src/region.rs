@@ -82,7 +82,7 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// let mut region = Region::open(&path)?;
 /// let all = QueryOptions::new("AGV-TUG4", Policy::Carriageway);
 /// let edge = region.edges(&all)?.next().expect("the region has roads")?;
-/// let why = region.explain(edge.edge_id, "AGV-TUG4", Policy::Carriageway, &Stop::never())?;
+/// let why = region.explain(edge.edge.id, "AGV-TUG4", Policy::Carriageway, &Stop::never())?;
 /// println!("{}", words(&why).headline);
 /// assert!(!words(&why).headline.is_empty());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -8,9 +8,7 @@ use super::super::region::Region;
 use super::super::roads::RoadIndex;
 use crate::network::Network;
 use crate::osm::facts::RoadClass;
-use crate::osm::facts::highway;
 use crate::rows::{Bounds, EdgeKey, MapEdge, MapNumbers, RoadName, SetKey};
-use crate::words::Named as _;
 
 /// Fewer edges are not worth a second thread.
 pub(super) const LEAST_IN_PARALLEL: usize = 500;

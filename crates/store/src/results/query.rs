@@ -15,7 +15,7 @@ use crate::words::{Named, VerdictKind};
 use netcert_rows::{Bounds, EdgeRow};
 
 use crate::columns::names::{corridor_no, of_kind, width_columns};
-use crate::columns::read::{centimetres, line, word, word_or_none};
+use crate::columns::read::{centimetres, line, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
 use crate::results::numbers;

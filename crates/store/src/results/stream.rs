@@ -9,7 +9,7 @@ use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
 use crate::columns::names::width_columns;
-use crate::columns::read::{verdict, word, word_or_none};
+use crate::columns::read::{verdict, word_or_none};
 use crate::database::Database;
 use crate::database::streamed::Streamed;
 use crate::error::{StoreError, content};
