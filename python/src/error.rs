@@ -72,6 +72,7 @@ pub(crate) fn of_question(error: &Unanswered) -> PyErr {
     match error {
         Unanswered::Place(error) => PlaceError::new_err(error.to_string()),
         Unanswered::Stopped(_) => stopped(),
+        _ => RegionError::new_err(error.to_string()),
     }
 }
 

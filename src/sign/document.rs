@@ -16,6 +16,7 @@ const VALUE: &str = ",\"value\":\"";
 
 /// Why a certificate file is not signed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NotSigned {
     /// The seal does not hold, or there is none.
     #[error("not a certificate file as netcert wrote it: {0}")]

@@ -36,6 +36,7 @@ pub struct Signed {
 
 /// Why a signature is refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// There is no signature.
     #[error("it is not signed")]

@@ -42,10 +42,48 @@ impl Verdict {
     pub fn claims_nothing(self) -> bool {
         matches!(self, Self::Unknown(UnknownReason::Failed | UnknownReason::TookTooLong))
     }
+
+    /// Every verdict with each of its reasons. Other crates cannot list the reasons without a case for reasons that are yet to come.
+    pub fn every() -> impl Iterator<Item = Self> {
+        std::iter::successors(Some(Self::Safe), |verdict| verdict.successor())
+    }
+
+    /// The next one of [`Self::every`]. The match is exhaustive, so a new reason does not compile until it is added here.
+    fn successor(self) -> Option<Self> {
+        use {ForbiddenReason as F, UnknownReason as N};
+        Some(match self {
+            Self::Safe => Self::Unsafe(UnsafeReason::Width),
+            Self::Unsafe(UnsafeReason::Width) => Self::Unsafe(UnsafeReason::Articulation),
+            Self::Unsafe(UnsafeReason::Articulation) => Self::Unsafe(UnsafeReason::SteeringLock),
+            Self::Unsafe(UnsafeReason::SteeringLock) => Self::Forbidden(F::Height),
+            Self::Forbidden(F::Height) => Self::Forbidden(F::Weight),
+            Self::Forbidden(F::Weight) => Self::Forbidden(F::AxleLoad),
+            Self::Forbidden(F::AxleLoad) => Self::Forbidden(F::Length),
+            Self::Forbidden(F::Length) => Self::Forbidden(F::Width),
+            Self::Forbidden(F::Width) => Self::Forbidden(F::Hgv),
+            Self::Forbidden(F::Hgv) => Self::Forbidden(F::Access),
+            Self::Forbidden(F::Access) => Self::Forbidden(F::Barrier),
+            Self::Forbidden(F::Barrier) => Self::Forbidden(F::Restriction),
+            Self::Forbidden(F::Restriction) => Self::Forbidden(F::Oneway),
+            Self::Forbidden(F::Oneway) => Self::Forbidden(F::Axles),
+            Self::Forbidden(F::Axles) => Self::Forbidden(F::Trailers),
+            Self::Forbidden(F::Trailers) => Self::Forbidden(F::Class),
+            Self::Forbidden(F::Class) => Self::Unknown(N::Width),
+            Self::Unknown(N::Width) => Self::Unknown(N::Geometry),
+            Self::Unknown(N::Geometry) => Self::Unknown(N::Cut),
+            Self::Unknown(N::Cut) => Self::Unknown(N::Limit),
+            Self::Unknown(N::Limit) => Self::Unknown(N::Failed),
+            Self::Unknown(N::Failed) => Self::Unknown(N::Time),
+            Self::Unknown(N::Time) => Self::Unknown(N::Rule),
+            Self::Unknown(N::Rule) => Self::Unknown(N::TookTooLong),
+            Self::Unknown(N::TookTooLong) => return None,
+        })
+    }
 }
 
 /// Why the certificate does not hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum UnsafeReason {
     /// RSC < 0: the swept bodies need more width than the corridor has.
     Width,
@@ -57,6 +95,7 @@ pub enum UnsafeReason {
 
 /// The tagged rule that forbids the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ForbiddenReason {
     /// `maxheight`, `maxheight:physical`
     Height,
@@ -88,6 +127,7 @@ pub enum ForbiddenReason {
 
 /// Why there is no verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum UnknownReason {
     /// No width can be derived.
     Width,

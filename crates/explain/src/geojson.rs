@@ -21,6 +21,7 @@ pub const TURN_NOTE: &str = "The turn by itself, on the best of its paths; its t
 
 /// Why an explanation cannot be drawn on a map.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MapError {
     /// The caller no longer wants it.
     #[error(transparent)]

@@ -312,6 +312,7 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
         (UnknownReason::TookTooLong, _) => {
             "unknown: the certificate took too long; `netcert certify --patience` gives it more time".to_owned()
         }
+        _ => format!("unknown: {}", verdict_words(e.verdict).1.replace('_', " ")),
     };
     format!("{said}{on}")
 }

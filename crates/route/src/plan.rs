@@ -67,6 +67,7 @@ pub struct Answer {
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Unanswered {
     /// A place is near no road that the vehicle may use.
     #[error(transparent)]

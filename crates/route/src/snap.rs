@@ -47,6 +47,7 @@ pub struct Snapped {
 
 /// Why no road was found for a place.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SnapError {
     /// The nearest road is too far away.
     #[error(

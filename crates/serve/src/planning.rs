@@ -136,6 +136,7 @@ impl PlannerThread {
         let answer = answer.map_err(|unanswered| match unanswered {
             Unanswered::Place(error) => self.no_road(planner, ride, &error),
             Unanswered::Stopped(stopped) => stopped.into(),
+            other => Problem::fault(other.to_string()),
         })?;
         let (network, model) = (&self.roads.network, &self.driver.model);
         let mut members = route::json(network, model, &answer);
@@ -167,6 +168,7 @@ impl PlannerThread {
         let (place, nearest) = match *error {
             SnapError::TooFar { place, nearest, distance_m, .. } => (place, Some((nearest, distance_m))),
             SnapError::Nothing { place } => (place, None),
+            _ => return Problem::fault(error.to_string()),
         };
         let last = ride.question.places.len().saturating_sub(1);
         let at = ride.question.places.iter().position(|&one| one == place);

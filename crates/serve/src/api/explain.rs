@@ -174,7 +174,7 @@ fn of_turn(
 fn unmapped(error: MapError) -> Problem {
     match error {
         MapError::Stopped(stopped) => stopped.into(),
-        MapError::Frame(error) => Problem::fault(error.to_string()),
+        other => Problem::fault(other.to_string()),
     }
 }
 

@@ -88,41 +88,9 @@ mod tests {
         }
     }
 
-    /// The match is exhaustive, so a new reason does not compile until it is added here. The test then requires a number.
-    fn successor(verdict: Verdict) -> Option<Verdict> {
-        use {ForbiddenReason as F, UnknownReason as N, Verdict as V};
-        Some(match verdict {
-            V::Safe => V::Unsafe(UnsafeReason::Width),
-            V::Unsafe(UnsafeReason::Width) => V::Unsafe(UnsafeReason::Articulation),
-            V::Unsafe(UnsafeReason::Articulation) => V::Unsafe(UnsafeReason::SteeringLock),
-            V::Unsafe(UnsafeReason::SteeringLock) => V::Forbidden(F::Height),
-            V::Forbidden(F::Height) => V::Forbidden(F::Weight),
-            V::Forbidden(F::Weight) => V::Forbidden(F::AxleLoad),
-            V::Forbidden(F::AxleLoad) => V::Forbidden(F::Length),
-            V::Forbidden(F::Length) => V::Forbidden(F::Width),
-            V::Forbidden(F::Width) => V::Forbidden(F::Hgv),
-            V::Forbidden(F::Hgv) => V::Forbidden(F::Access),
-            V::Forbidden(F::Access) => V::Forbidden(F::Barrier),
-            V::Forbidden(F::Barrier) => V::Forbidden(F::Restriction),
-            V::Forbidden(F::Restriction) => V::Forbidden(F::Oneway),
-            V::Forbidden(F::Oneway) => V::Forbidden(F::Axles),
-            V::Forbidden(F::Axles) => V::Forbidden(F::Trailers),
-            V::Forbidden(F::Trailers) => V::Forbidden(F::Class),
-            V::Forbidden(F::Class) => V::Unknown(N::Width),
-            V::Unknown(N::Width) => V::Unknown(N::Geometry),
-            V::Unknown(N::Geometry) => V::Unknown(N::Cut),
-            V::Unknown(N::Cut) => V::Unknown(N::Limit),
-            V::Unknown(N::Limit) => V::Unknown(N::Failed),
-            V::Unknown(N::Failed) => V::Unknown(N::Time),
-            V::Unknown(N::Time) => V::Unknown(N::Rule),
-            V::Unknown(N::Rule) => V::Unknown(N::TookTooLong),
-            V::Unknown(N::TookTooLong) => return None,
-        })
-    }
-
     #[test]
     fn every_verdict_has_a_number_and_words_of_its_own() {
-        let all: Vec<Verdict> = std::iter::successors(Some(Verdict::Safe), |&v| successor(v)).collect();
+        let all: Vec<Verdict> = Verdict::every().collect();
         assert_eq!(all.len(), VERDICTS.len());
         for &verdict in &all {
             let no = verdict_no(verdict).unwrap();
