@@ -56,6 +56,28 @@ pub fn text(
 ///
 /// # Errors
 /// See [`CertificateError`].
+///
+/// ```
+/// # let (_folder, path) = netcert_testing::documentation::junction_region();
+/// use netcert::corridor::FileCorridor;
+/// use netcert::osm::facts::Policy;
+/// use netcert::region::Region;
+/// use netcert::route::{Measure, Position, Question};
+/// use netcert::{certificate, check, stop::Stop};
+///
+/// let mut region = Region::open(&path)?;
+/// let mut planner = region.planner("AGV-TUG4", Policy::Carriageway, Measure::Time)?;
+/// let places = vec![Position { lon: 0.001, lat: 0.0 }, Position { lon: 0.003, lat: 0.002 }];
+/// let question = Question { places, snap_m: 50.0, alternatives: 0, tries: 30 };
+/// let route = planner.answer(&question, &Stop::never())?.routes.remove(0);
+///
+/// let origin = region.origin("AGV-TUG4", Policy::Carriageway, None)?;
+/// let given = FileCorridor { corridor: route.path.corridor, frame: Some(route.path.frame) };
+/// let (model, options) = (&planner.driver().model, &planner.driver().permits.settings.stet);
+/// let file = certificate::text_under(Vec::new(), &origin, &given, model, &route.certificate, options)?;
+/// assert!(check::certificate(&file).confirmed());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn text_under(
     conditions: Vec<Value>,
     origin: &Origin,
@@ -79,6 +101,7 @@ pub fn text_under(
 ///
 /// # Errors
 /// See [`CertificateError`].
+#[doc(hidden)]
 pub fn json(
     given: &FileCorridor,
     model: &Model,

@@ -18,6 +18,7 @@ mod export;
 mod export_engines;
 mod export_evidence;
 mod export_formats;
+mod facade;
 mod geopackage;
 mod gis;
 mod manoeuvres;
