@@ -510,7 +510,7 @@ pub mod store {
     //! let options = QueryOptions { area: Some(north), ..QueryOptions::new("AGV-TUG4", Policy::Carriageway) };
     //! let edges: Vec<EdgeRow> = Region::open(&path)?.edges(&options)?.collect::<Result<_, _>>()?;
     //! // The side road, in both directions.
-    //! assert_eq!(edges.iter().map(|edge| edge.highway.as_str()).collect::<Vec<_>>(), ["residential"; 2]);
+    //! assert_eq!(edges.iter().map(|edge| edge.road.highway.as_str()).collect::<Vec<_>>(), ["residential"; 2]);
     //! # Ok::<(), Box<dyn std::error::Error>>(())
     //! ```
 
