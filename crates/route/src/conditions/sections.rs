@@ -35,17 +35,16 @@ impl Section {
 pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, long_m: f64) -> Vec<Section> {
     let drive = way.drive;
     let turns = joint::turns(movements, drive);
-    let last = drive.edges.len() - 1;
     let mut sections = Vec::new();
     let (mut first, mut start) = (0, way.start);
     for leg in 0..=turns.len() {
         let before = leg.checked_sub(1).map(|turn| turns[turn][1]);
         let after = turns.get(leg).map(|turn| turn[0]);
-        let edges = before.unwrap_or(0)..=after.unwrap_or(last);
-        let pieces: Vec<Piece> = edges.map(|at| Piece::of(network, way, at)).collect();
-        let whole_m = pieces.iter().map(Piece::length_m).sum();
+        let range = before.unwrap_or(0)..after.map_or(drive.edges.len(), |at| at + 1);
+        let driven: Vec<DrivenEdge> = range.map(|at| DrivenEdge::of(network, way, at)).collect();
+        let whole_m = driven.iter().map(DrivenEdge::length_m).sum();
         for cut_m in cuts_m(whole_m, long_m, before.is_some(), after.is_some()) {
-            let Some((at, share)) = place(&pieces, cut_m) else { continue };
+            let Some((at, share)) = edge_at(&driven, cut_m) else { continue };
             sections.push(section(drive, first..at + 1, start, share));
             (first, start) = (at, share);
         }
@@ -66,7 +65,7 @@ fn cuts_m(whole_m: f64, long_m: f64, before: bool, after: bool) -> Vec<f64> {
 }
 
 /// The part of an edge that a way drives.
-struct Piece {
+struct DrivenEdge {
     /// The index of the edge in the way.
     at: usize,
     /// The shares of the edge at which the part begins and ends.
@@ -75,7 +74,7 @@ struct Piece {
     edge_m: f64,
 }
 
-impl Piece {
+impl DrivenEdge {
     fn of(network: &Network, way: &Way<'_>, at: usize) -> Self {
         let edges = &way.drive.edges;
         let start = if at == 0 { way.start } else { 0.0 };
@@ -90,11 +89,11 @@ impl Piece {
 }
 
 /// The edge at a distance from the beginning of a leg, and the share of the edge before that place.
-fn place(pieces: &[Piece], mut from_start_m: f64) -> Option<(usize, f64)> {
-    for piece in pieces {
-        let own_m = piece.length_m();
+fn edge_at(driven: &[DrivenEdge], mut from_start_m: f64) -> Option<(usize, f64)> {
+    for edge in driven {
+        let own_m = edge.length_m();
         if own_m >= from_start_m {
-            return Some((piece.at, piece.shares[0] + from_start_m / piece.edge_m.max(1e-9)));
+            return Some((edge.at, edge.shares[0] + from_start_m / edge.edge_m.max(1e-9)));
         }
         from_start_m -= own_m;
     }
@@ -126,11 +125,11 @@ mod tests {
 
     #[test]
     fn a_place_counts_only_what_is_driven() {
-        let piece = |at, shares, edge_m| Piece { at, shares, edge_m };
-        let pieces = [piece(0, [0.5, 1.0], 200.0), piece(1, [0.0, 1.0], 300.0), piece(2, [0.0, 0.25], 400.0)];
-        assert_eq!(place(&pieces, 20.0), Some((0, 0.6)));
-        assert_eq!(place(&pieces, 250.0), Some((1, 0.5)));
-        assert_eq!(place(&pieces, 450.0), Some((2, 0.125)));
-        assert_eq!(place(&pieces, 501.0), None);
+        let edge = |at, shares, edge_m| DrivenEdge { at, shares, edge_m };
+        let driven = [edge(0, [0.5, 1.0], 200.0), edge(1, [0.0, 1.0], 300.0), edge(2, [0.0, 0.25], 400.0)];
+        assert_eq!(edge_at(&driven, 20.0), Some((0, 0.6)));
+        assert_eq!(edge_at(&driven, 250.0), Some((1, 0.5)));
+        assert_eq!(edge_at(&driven, 450.0), Some((2, 0.125)));
+        assert_eq!(edge_at(&driven, 501.0), None);
     }
 }
