@@ -13,6 +13,7 @@ use netcert_testing::oracle::claim::claim;
 use netcert_testing::oracle::crossing::{Crossing, Manoeuvre};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::planner::{drivable, room_m};
+use netcert_testing::thorough;
 use rayon::prelude::*;
 
 const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"];
@@ -24,7 +25,7 @@ const TURNS: usize = 6;
 const SPARE_M: f64 = 0.3;
 
 fn cases(usual: u64) -> u64 {
-    if std::env::var_os("NETCERT_THOROUGH").is_some() { 10 * usual } else { usual }
+    thorough::cases(usual, 10 * usual)
 }
 
 /// An attacked claim.

@@ -12,6 +12,7 @@ use netcert_testing::oracle::claim::{BodyPoint, Claim, certify, of};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::path::Path;
 use netcert_testing::oracle::road;
+use netcert_testing::thorough;
 use rayon::prelude::*;
 
 /// Errors of RK4 at 0.1 m and of the plan's cubic, as in `soundness.rs`. In bends of 8 m the cubic's error is larger.
@@ -157,7 +158,7 @@ pub fn attacked(
 
 #[test]
 fn nothing_comes_closer_than_promised_while_any_point_is_on_a_corridor() {
-    let cases = if std::env::var_os("NETCERT_THOROUGH").is_some() { 4_000 } else { 300 };
+    let cases = thorough::cases(300, 4_000);
     let tried: Vec<Option<String>> = (0..cases)
         .into_par_iter()
         .filter_map(|index| {
@@ -247,7 +248,7 @@ fn a_hinge_margin_holds_as_long_as_any_point_is_on_the_corridor() {
 fn the_bounds_of_a_straight_hold_however_long_the_vehicle_has_driven() {
     // Trailers with a hitch far behind or ahead of the axle have headings of ten degrees and more on a straight. There
     // the tangent of an angle differs from the angle.
-    let cases = if std::env::var_os("NETCERT_THOROUGH").is_some() { 600 } else { 60 };
+    let cases = thorough::cases(60, 600);
     let tried: Vec<Option<String>> = (0..cases)
         .into_par_iter()
         .filter_map(|index| {

@@ -21,6 +21,7 @@ use netcert_testing::oracle::attack;
 use netcert_testing::oracle::claim::{self, Claim};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::journey::{Journey, PartClaim};
+use netcert_testing::thorough;
 use rayon::prelude::*;
 
 /// Places that are attacked in each area and on each stretch between areas.
@@ -237,7 +238,7 @@ fn besieged(town: &Town) -> Option<(usize, Claims)> {
 
 #[test]
 fn no_body_on_a_route_comes_closer_to_the_edge_of_the_road_than_rsc() {
-    let thorough = std::env::var_os("NETCERT_THOROUGH").is_some();
+    let thorough = thorough::thorough();
     let towns = if thorough { THOROUGH.as_slice() } else { USUAL.as_slice() };
     let mut wanted = 0;
     let (mut routes, mut claims) = (0, Claims::default());

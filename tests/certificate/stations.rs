@@ -10,10 +10,11 @@ use netcert_testing::oracle::claim::{certify, claim};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::path::Path;
 use netcert_testing::oracle::road;
+use netcert_testing::thorough;
 use rayon::prelude::*;
 
 fn cases() -> u64 {
-    if std::env::var_os("NETCERT_THOROUGH").is_some() { 2_000 } else { 200 }
+    thorough::cases(200, 2_000)
 }
 
 /// A bend, perhaps one to the other side, and straights. Curvature rises within one to three stations.

@@ -3,6 +3,7 @@
 
 use netcert_testing::mutations::{COLUMNS, add, each, leeway, other_side, said, scale, survives};
 use netcert_testing::oracle::files::{Case, case};
+use netcert_testing::thorough;
 
 use netcert::check::{Outcome, certificate};
 use netcert::seal::sealed;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 
 /// Number of cases; more with `NETCERT_THOROUGH` set.
 fn cases() -> u64 {
-    if std::env::var_os("NETCERT_THOROUGH").is_some() { 400 } else { 40 }
+    thorough::cases(40, 400)
 }
 
 fn written(case: &Case) -> Value {
@@ -111,7 +112,7 @@ const MUTATIONS: &[Mutation] = &[
 
 #[test]
 fn what_is_changed_and_sealed_anew_is_refuted() {
-    let every = if std::env::var_os("NETCERT_THOROUGH").is_some() { 1 } else { 4 };
+    let every = thorough::cases(4, 1);
     let all: Vec<(usize, Vec<String>)> = (0..cases())
         .step_by(every)
         .collect::<Vec<_>>()

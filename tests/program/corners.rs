@@ -6,21 +6,21 @@ use netcert_testing::xml;
 #[test]
 fn a_table_says_which_kerbs_do_and_what_they_hold_for() {
     let place = WorkFolder::empty();
-    let text = place.netcert("corners --vehicle US-WB40 --angle 90 --svg corners.svg").succeeds();
-    text.shows("turn by 90°").shows("0: a sharp corner does").shows("no permit");
+    let text = place.netcert("corners --vehicle US-WB40 --angle 30 --svg corners.svg").succeeds();
+    text.shows("turn by 30°").shows("0: a sharp corner does").shows("no permit");
     let svg = String::from_utf8(place.read("corners.svg")).unwrap();
     xml::well_formed(&svg);
     let cells = svg.matches("<rect").count();
     assert!((100..110).contains(&cells), "one panel of ten widths by ten: {cells}");
 
-    let json = place.netcert("corners --vehicle US-WB40 --angle 90 --format json").succeeds().json();
+    let json = place.netcert("corners --vehicle US-WB40 --angle 30 --format json").succeeds().json();
     let table = &json["corners"][0];
     let widths_m = table["from_and_to_widths_m"].as_array().unwrap();
     let least = table["angles"][0]["least_kerb_radius_m"].as_array().unwrap();
-    assert_eq!((table["angles"][0]["turn_deg"].as_f64(), least.len()), (Some(90.0), widths_m.len()));
+    assert_eq!((table["angles"][0]["turn_deg"].as_f64(), least.len()), (Some(30.0), widths_m.len()));
 
     // The lines of the CSV are the table, row by row.
-    let csv = place.netcert("corners --vehicle US-WB40 --angle 90 --format csv").succeeds().out();
+    let csv = place.netcert("corners --vehicle US-WB40 --angle 30 --format csv").succeeds().out();
     let radii: Vec<Option<f64>> =
         csv.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().parse().ok()).collect();
     let of_json: Vec<Option<f64>> =

@@ -165,13 +165,8 @@ fn a_set_made_with_another_shift_is_computed_by_it() {
 }
 
 #[test]
-fn a_set_made_with_another_map_tolerance_is_computed_by_it() {
-    is_as_if_ingested_with("--map-tolerance 0", Policy::Carriageway);
-}
-
-#[test]
-fn a_set_made_with_another_smoothing_tolerance_is_computed_by_it() {
-    is_as_if_ingested_with("--smoothing-tolerance 1.5", Policy::Carriageway);
+fn a_set_made_with_other_tolerances_is_computed_by_them() {
+    is_as_if_ingested_with("--map-tolerance 0 --smoothing-tolerance 1.5", Policy::Carriageway);
 }
 
 #[test]

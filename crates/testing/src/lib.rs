@@ -5,6 +5,7 @@
 //! | `ascii_map`, `roundabout`, `junctions`, `routing`, `store_network` | draw roads, and make networks and routes of them |
 //! | `demo`, `extracts`, `catalogue`, `documentation` | the shipped region, real extracts, the catalogue's vehicles |
 //! | `program`, `python`, `skip` | run the built program and Python packages, and say what is not there |
+//! | `thorough` | how many cases a test looks at |
 //! | `accounts`, `sheet`, `xml` | look at what was written |
 //! | `mutations` | change certificate files so that `verify` must refute them |
 //! | `oracle` | the link between the certifier and the oracle |
@@ -31,6 +32,7 @@ pub mod routing;
 pub mod sheet;
 pub mod skip;
 pub mod store_network;
+pub mod thorough;
 pub mod xml;
 
 /// The folder of the repository.
