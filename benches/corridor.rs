@@ -6,7 +6,7 @@
 
 use divan::counter::ItemsCount;
 use netcert::corridor::{Corridor, CurvatureProfile, Frame, Params, stroke_corridor};
-use netcert::network::{Edge, Network, Road, Stroke};
+use netcert::network::{Edge, EdgeNo, Network, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
 
@@ -94,7 +94,7 @@ fn add_stroke(n: &mut Network, degrees: &[[f64; 2]]) {
             barred: false,
             cut: false,
         });
-        n.stroke_edges.push(index);
+        n.stroke_edges.push(EdgeNo::new(index));
     }
     n.strokes.push(Stroke { approach: 0..0, edges: edges..n.stroke_edges.len() as u32, closed: false });
 }

@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout)]
 
 use netcert::corridor::{Corridor, EdgeSpan, Params, stroke_corridor};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::osm::facts::{Direction, Policy};
 use netcert::rows::EdgeRow;
 use netcert::store::{Database, QueryOptions};
@@ -115,20 +115,20 @@ fn main() -> Result<(), Failure> {
 
 /// Widths by edge. `None` if the edge is unknown.
 fn widths(network: &Network, rows: &[EdgeRow], policy: Policy) -> Vec<Option<Width>> {
-    let of_stroke = |stroke| -> Vec<(u32, Width)> {
+    let of_stroke = |stroke| -> Vec<(EdgeNo, Width)> {
         let Ok(made) = stroke_corridor(network, stroke, policy, &Params::default()) else { return Vec::new() };
         let known = made.spans.iter().filter(|span| span.unknown.is_none());
         let width = |span: &EdgeSpan| {
-            let edge = network.edges.get(span.edge as usize)?;
+            let edge = network.edges.get(span.edge.index())?;
             let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
             let strip_m = f64::from(section.strip(policy)?.width_m());
-            Some((span.edge, Width::of(&made.corridor, span, strip_m, rows.get(span.edge as usize)?)))
+            Some((span.edge, Width::of(&made.corridor, span, strip_m, rows.get(span.edge.index())?)))
         };
         known.filter_map(width).collect()
     };
     let mut widths: Vec<Option<Width>> = rows.iter().map(|_| None).collect();
     for (edge, width) in network.strokes.par_iter().flat_map_iter(of_stroke).collect::<Vec<_>>() {
-        if let Some(slot) = widths.get_mut(edge as usize) {
+        if let Some(slot) = widths.get_mut(edge.index()) {
             *slot = Some(width);
         }
     }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use netcert::evidence::{Along, Match, Place, Quantity, Row, Value, match_rows};
-use netcert::network::{Network, build};
+use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::facts::{Countries, cross_sections};
 use netcert::osm::{LonLat, pbf::read_extract};
 
@@ -34,8 +34,8 @@ impl Random {
     }
 }
 
-/// A row for an edge, with the edge's index.
-fn noisy(network: &Network, random: &mut Random, number: usize) -> (u32, Row) {
+/// A row for an edge, with the edge's number.
+fn noisy(network: &Network, random: &mut Random, number: usize) -> (EdgeNo, Row) {
     let index = (random.below_one() * network.edges.len() as f64) as usize;
     let edge = &network.edges[index];
     let [east_m, north_m] = random.normal();
@@ -61,7 +61,7 @@ fn noisy(network: &Network, random: &mut Random, number: usize) -> (u32, Row) {
         name: name.map(|name| network.strings.text(name).to_owned()),
         note: None,
     };
-    (index as u32, row)
+    (EdgeNo::at(index), row)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cross_sections(facts, place, ring_radius_m, countries.rules())
     });
     let mut random = Random(1);
-    let (truth, rows): (Vec<u32>, Vec<Row>) = (0..ROWS).map(|number| noisy(&network, &mut random, number)).unzip();
+    let (truth, rows): (Vec<EdgeNo>, Vec<Row>) = (0..ROWS).map(|number| noisy(&network, &mut random, number)).unzip();
     let start = Instant::now();
     let matches = match_rows(&network, &rows);
     let seconds = start.elapsed().as_secs_f64();

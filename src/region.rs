@@ -248,7 +248,7 @@ impl Region {
         let (settings, model) = (set.settings()?, Model::new(&vehicle)?);
         let roads = self.roads()?;
         let unknown = || RegionError::NoSuchId { path: self.path.clone(), id: edge_id };
-        let found = (0_u32..).zip(&roads.network.edges).find(|(_, edge)| edge.id == edge_id);
+        let found = roads.network.numbered_edges().find(|(_, edge)| edge.id == edge_id);
         let (edge, _) = found.ok_or_else(unknown)?;
         explain::explain_edge(&roads.network, edge, &model, &settings, stop)?.ok_or_else(unknown)
     }

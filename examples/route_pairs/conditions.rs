@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use netcert::network::MovementKind;
+use netcert::network::{EdgeNo, MovementKind};
 use netcert::route::{Access, BARRED, Goal, Measure, PartKind, Planner, Question, Snapper, Speeds, Start, search_over};
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
@@ -24,7 +24,7 @@ enum Outcome {
     Nothing(String),
 }
 
-pub(super) fn tell(region: &Region, from: &[u32], pairs: u64) {
+pub(super) fn tell(region: &Region, from: &[EdgeNo], pairs: u64) {
     let began = Instant::now();
     let lawful = lawful(region);
     let outcomes: Vec<(Outcome, f64)> =
@@ -74,11 +74,11 @@ pub(super) fn tell(region: &Region, from: &[u32], pairs: u64) {
     );
 }
 
-fn outcome(region: &Region, lawful: &Access, from: &[u32], pair: u64) -> (Outcome, f64) {
+fn outcome(region: &Region, lawful: &Access, from: &[EdgeNo], pair: u64) -> (Outcome, f64) {
     let mut draw = Draw(pair);
     let places = vec![region.place(from, &mut draw), region.place(from, &mut draw)];
     let (graph, snapper, stop) = (region.graph(), Snapper::new(&region.roads), Stop::never());
-    let open = |edge: u32| lawful.edges[edge as usize] != BARRED;
+    let open = |edge: EdgeNo| lawful.edges[edge.index()] != BARRED;
     let snapped: Vec<_> = places.iter().map(|&place| snapper.snap(place, 50.0, open).unwrap()).collect();
     let starts: Vec<Start> = snapped[0].on.iter().map(|on| Start::new(on.edge, on.share)).collect();
     let goals: Vec<Vec<Goal>> = vec![snapped[1].on.clone()];
@@ -130,7 +130,7 @@ fn lawful(region: &Region) -> Access {
 fn kind(region: &Region, at: PartKind) -> String {
     let (permits, movements) = (&region.driver.permits, &region.roads.movements);
     match at {
-        PartKind::Edge(edge) => format!("edge, {:?}", permits.edges[edge as usize].verdict),
+        PartKind::Edge(edge) => format!("edge, {:?}", permits.edges[edge.index()].verdict),
         PartKind::Turn { from, to } => match movements.index(from, to) {
             Some(place) => format!("turn, {:?}", permits.movements[place].verdict),
             None => format!("passage, {:?}", movements.passage(from, to).map(|place| permits.passages[place].verdict)),

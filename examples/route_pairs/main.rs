@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use netcert::network::PassageKind;
+use netcert::network::{EdgeNo, PassageKind};
 use netcert::osm::facts::{Policy, RoadClass};
 use netcert::route::{
     Answer, AssemblyError, Driver, Graph, Measure, Obstacle, PartKind, Permit, Planner, Position, Question, Roads,
@@ -70,14 +70,14 @@ impl Region {
     }
 
     /// A vertex of one of these edges.
-    fn place(&self, from: &[u32], draw: &mut Draw) -> Position {
+    fn place(&self, from: &[EdgeNo], draw: &mut Draw) -> Position {
         let line: Vec<_> =
-            self.roads.network.positions(&self.roads.network.edges[from[draw.of(from.len())] as usize]).collect();
+            self.roads.network.positions(&self.roads.network.edges[from[draw.of(from.len())].index()]).collect();
         let (lon, lat) = line[draw.of(line.len())].degrees();
         Position { lon, lat }
     }
 
-    fn answers(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
+    fn answers(&self, from: &[EdgeNo], pairs: u64) -> Vec<Answer> {
         let place = |draw: &mut Draw| self.place(from, draw);
         let shared = |first: u64| {
             let speeds = Speeds::builtin().unwrap();
@@ -95,7 +95,7 @@ impl Region {
         firsts.into_par_iter().flat_map_iter(shared).collect()
     }
 
-    fn tell(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
+    fn tell(&self, from: &[EdgeNo], pairs: u64) -> Vec<Answer> {
         let start = Instant::now();
         let answers = self.answers(from, pairs);
         let seconds = start.elapsed().as_secs_f64();
@@ -152,13 +152,13 @@ impl Region {
     /// Prints where whole routes failed although their parts passed, the ten commonest places.
     fn tell_refutations(&self, answers: &[Answer]) {
         let network = &self.roads.network;
-        let name = |edge: u32| network.edges[edge as usize].id;
+        let name = |edge: EdgeNo| network.edges[edge.index()].id;
         let mut places: BTreeMap<String, usize> = BTreeMap::new();
         for refutation in answers.iter().flat_map(|answer| &answer.refuted) {
             let at = |at: PartKind| match at {
                 PartKind::Edge(edge) => format!("edge {}", name(edge)),
                 PartKind::Turn { from, to } => {
-                    let length_m = network.length_m(&network.edges[from as usize]);
+                    let length_m = network.length_m(&network.edges[from.index()]);
                     format!("turn from edge {} ({length_m:.0} m) into edge {}", name(from), name(to))
                 }
             };
@@ -181,7 +181,7 @@ impl Region {
 
     fn words(&self, obstacle: &Obstacle) -> String {
         let network = &self.roads.network;
-        let edge = |edge: u32| &network.edges[edge as usize];
+        let edge = |edge: EdgeNo| &network.edges[edge.index()];
         let missing = match obstacle.missing_m {
             None => "no number".to_owned(),
             Some(m) => ["to 0.3 m", "to 1 m", "to 3 m", "more"]
@@ -199,7 +199,7 @@ impl Region {
             }
             at @ PartKind::Turn { from, to } => {
                 let kind = passes_over(network, at).map_or("turn", PassageKind::name);
-                let main = |at: u32| network.road(edge(at)).class <= RoadClass::Tertiary;
+                let main = |at: EdgeNo| network.road(edge(at)).class <= RoadClass::Tertiary;
                 let short = [from, to].iter().any(|&at| network.length_m(edge(at)) < SHORT_M);
                 let main = ["minor", "minor and main", "main"][usize::from(main(from)) + usize::from(main(to))];
                 let short = if short { ", beside a short edge" } else { "" };
@@ -222,7 +222,8 @@ fn main() {
     let pairs: u64 = pairs.parse().unwrap();
     let region = Region::open(file, vehicle, Policy::named(policy).expect("lane, direction or carriageway"));
     let permits = &region.driver.permits;
-    let safe: Vec<u32> = (0..region.roads.network.edges.len() as u32).filter(|&edge| permits.edge(edge)).collect();
+    let safe: Vec<EdgeNo> =
+        EdgeNo::first(region.roads.network.edges.len()).filter(|&edge| permits.edge(edge)).collect();
     let good = |permits: &[Permit]| permits.iter().filter(|p| p.verdict == Verdict::Safe && p.rsc_m.is_some()).count();
     let (edges, ways) = (region.roads.network.edges.len(), (permits.movements.len(), permits.passages.len()));
     println!(
@@ -234,22 +235,22 @@ fn main() {
         ways.1
     );
     let network = &region.roads.network;
-    let main = |edge: &u32| network.road(&network.edges[*edge as usize]).class <= RoadClass::Tertiary;
+    let main = |edge: &EdgeNo| network.road(&network.edges[edge.index()]).class <= RoadClass::Tertiary;
     if !conditions.is_empty() {
-        let lawful = |edge: &u32| !matches!(permits.edges[*edge as usize].verdict, Verdict::Forbidden(_));
-        let main_roads: Vec<u32> = (0..network.edges.len() as u32).filter(lawful).filter(main).collect();
+        let lawful = |edge: &EdgeNo| !matches!(permits.edges[edge.index()].verdict, Verdict::Forbidden(_));
+        let main_roads: Vec<EdgeNo> = EdgeNo::first(network.edges.len()).filter(lawful).filter(main).collect();
         println!(" among the {} lawful edges of main roads:", main_roads.len());
         return conditions::tell(&region, &main_roads, pairs);
     }
     println!(" among all safe edges:");
     region.tell(&safe, pairs);
-    let main_roads: Vec<u32> = safe.iter().copied().filter(main).collect();
+    let main_roads: Vec<EdgeNo> = safe.iter().copied().filter(main).collect();
     println!(" among the {} safe edges of main roads:", main_roads.len());
     let answers = region.tell(&main_roads, pairs);
     region.tell_obstacles(&answers);
     region.tell_refutations(&answers);
     let parts = components(&region.graph(), &permits.access(&region.roads.movements));
-    let largest: Vec<u32> = safe.iter().copied().filter(|&edge| parts.of[edge as usize] == Some(0)).collect();
+    let largest: Vec<EdgeNo> = safe.iter().copied().filter(|&edge| parts.of[edge.index()] == Some(0)).collect();
     println!(" among the {} edges of the largest of {} parts:", largest.len(), parts.count);
     region.tell_refutations(&region.tell(&largest, pairs));
 }

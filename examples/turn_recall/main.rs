@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use netcert::network::{MovementKind, Network};
+use netcert::network::{EdgeNo, MovementKind, Network};
 use netcert::osm::facts::{Direction, Policy, RoadClass};
 use netcert::rows::TurnRow;
 use netcert::store::Database;
@@ -41,18 +41,19 @@ fn main() {
     let record = database.vehicles().unwrap().into_iter().find(|record| &record.id == id).expect("certified");
     let vehicle = Vehicle::from_json(&record.definition).unwrap();
     let network = database.load_network().unwrap();
-    let edges: BTreeMap<i64, u32> = (0..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
+    let edges: BTreeMap<i64, EdgeNo> =
+        EdgeNo::all().zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
     let mut safe = vec![false; network.edges.len()];
     for row in database.query(&netcert::store::QueryOptions::new(id, policy)).unwrap() {
         let row = row.unwrap();
-        safe[row.edge.index as usize] = row.certificate.verdict == Verdict::Safe;
+        safe[row.edge.index.index()] = row.certificate.verdict == Verdict::Safe;
     }
     let rows = database.turn_rows(id, policy).unwrap().map(|row| row.unwrap());
-    let main = |edge: u32| network.road(&network.edges[edge as usize]).class <= RoadClass::Tertiary;
+    let main = |edge: EdgeNo| network.road(&network.edges[edge.index()]).class <= RoadClass::Tertiary;
     let wanted = |row: &TurnRow| {
         let ends = [edges[&row.turn.from_edge], edges[&row.turn.to_edge]];
         let turns = row.arcs.is_none() && row.restriction.is_none() && ANGLES_DEG.contains(&row.angle_deg.abs());
-        turns && ends.iter().all(|&edge| safe[edge as usize] && main(edge))
+        turns && ends.iter().all(|&edge| safe[edge.index()] && main(edge))
     };
     let mut rows: Vec<TurnRow> = rows.filter(wanted).collect();
     let all = rows.len();
@@ -90,9 +91,9 @@ fn main() {
 }
 
 /// The turn on straight roads, drawn to the left.
-fn crossing(network: &Network, ends: [u32; 2], row: &TurnRow, beyond: bool, policy: Policy) -> Option<Crossing> {
-    let strip = |edge: u32, policy: Policy| {
-        let edge = &network.edges[edge as usize];
+fn crossing(network: &Network, ends: [EdgeNo; 2], row: &TurnRow, beyond: bool, policy: Policy) -> Option<Crossing> {
+    let strip = |edge: EdgeNo, policy: Policy| {
+        let edge = &network.edges[edge.index()];
         let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
         let strip = section.strip(policy)?;
         let [right_m, left_m] = [f64::from(strip.right_m), f64::from(strip.left_m)];

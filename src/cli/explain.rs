@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use netcert::explain::{self, Explanation, RoadFacts, TurnExplanation};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::osm::facts::{Policy, highway};
 use netcert::picture;
 use netcert::pipeline;
@@ -199,7 +199,7 @@ impl Explain {
         Ok(set.filter(|set| !own || set.vehicle_blake3 == hash))
     }
 
-    fn one_edge(&self, network: &Network, database: &mut Database, policy: Policy) -> anyhow::Result<u32> {
+    fn one_edge(&self, network: &Network, database: &mut Database, policy: Policy) -> anyhow::Result<EdgeNo> {
         let found = candidates(network, &self.edge);
         match found.as_slice() {
             [one] => Ok(*one),
@@ -220,13 +220,13 @@ impl Explain {
         network: &Network,
         database: &mut Database,
         policy: Policy,
-        edges: &[u32],
+        edges: &[EdgeNo],
     ) -> anyhow::Result<String> {
         let mut table = Table::new(&[">edge_id", ">way", "dir", "highway", ">length", ">rsc", "verdict", "road"]);
         let certified =
             database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle.id && set.policy == policy);
         for &edge in edges.iter().take(MOST_LISTED) {
-            let Some(facts) = network.edges.get(edge as usize) else { continue };
+            let Some(facts) = network.edges.get(edge.index()) else { continue };
             let road = network.road(facts);
             let row = if certified {
                 let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle.id, policy) };
@@ -260,19 +260,19 @@ impl Explain {
 fn stored(
     database: &mut Database,
     network: &Network,
-    edge: u32,
+    edge: EdgeNo,
     set: Option<&CertifiedSet>,
 ) -> anyhow::Result<Option<EdgeRow>> {
-    let Some((set, facts)) = set.zip(network.edges.get(edge as usize)) else { return Ok(None) };
+    let Some((set, facts)) = set.zip(network.edges.get(edge.index())) else { return Ok(None) };
     let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&set.vehicle_id, set.policy) };
     Ok(database.query(&options)?.next().transpose()?)
 }
 
 /// Indices of the edges that match `asked`. The first of these with a match decides: edge id, way id, a whole name or ref,
 /// a part of a name or ref.
-fn candidates(network: &Network, asked: &str) -> Vec<u32> {
-    let matching = |wanted: &dyn Fn(&netcert::network::Edge) -> bool| -> Vec<u32> {
-        (0..).zip(&network.edges).filter(|(_, edge)| wanted(edge)).map(|(i, _)| i).collect()
+fn candidates(network: &Network, asked: &str) -> Vec<EdgeNo> {
+    let matching = |wanted: &dyn Fn(&netcert::network::Edge) -> bool| -> Vec<EdgeNo> {
+        network.numbered_edges().filter(|(_, edge)| wanted(edge)).map(|(i, _)| i).collect()
     };
     if let Ok(number) = asked.trim().parse::<i64>() {
         let found = matching(&|edge| edge.id == number);

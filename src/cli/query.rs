@@ -142,7 +142,7 @@ impl Query {
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
             let row = row?;
-            let relative = relative::beside(&mut beside, row.edge.index, &row.certificate)?;
+            let relative = relative::beside(&mut beside, row.edge.index.get(), &row.certificate)?;
             if self.shows(relative) {
                 totals.add(&row, relative);
                 sink.row(&row, relative)?;

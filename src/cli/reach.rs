@@ -4,7 +4,7 @@ use std::io::Write;
 
 use anyhow::bail;
 use clap::{Args, ValueEnum};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::osm::rounded;
 use netcert::route::{self, Measure, PartKind, Position, ReachableEdges, Snapper};
 use netcert::words::at_local_time;
@@ -62,14 +62,14 @@ impl ReachQuery {
         let access = inputs.driver.permits.access(&inputs.roads.movements);
         let snapped =
             Snapper::new(&inputs.roads).snap(self.from, self.snap, |edge| inputs.driver.permits.edge(edge))?;
-        let starts: Vec<u32> = snapped.on.iter().map(|on| on.edge).collect();
+        let starts: Vec<EdgeNo> = snapped.on.iter().map(|on| on.edge).collect();
         session.progress.say(&format!("the road is {:.0} m from there", snapped.distance_m));
         let now = route::reach(&graph, &access, &starts);
         let components = route::components(&graph, &access);
         let opened = match self.what_if {
             None => None,
             Some(id) => {
-                let found = (0_u32..).zip(&inputs.roads.network.edges).find(|(_, edge)| edge.id == id);
+                let found = inputs.roads.network.numbered_edges().find(|(_, edge)| edge.id == id);
                 let Some((edge, _)) = found else {
                     bail!("{}: no edge {id}; `netcert query` lists their ids", inputs.path.display());
                 };
@@ -99,11 +99,11 @@ fn tell(
     out: &mut dyn Write,
     inputs: &RoutingInputs,
     now: &ReachableEdges,
-    opened: Option<&(u32, ReachableEdges)>,
+    opened: Option<&(EdgeNo, ReachableEdges)>,
     components: &route::Components,
 ) -> std::io::Result<()> {
     let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
-    let certified = km(network, |i| inputs.driver.permits.edge(i as u32));
+    let certified = km(network, |i| inputs.driver.permits.edge(EdgeNo::at(i)));
     let there = km(network, |i| now.there[i]);
     let back = km(network, |i| now.and_back[i]);
     let share = |part: f64| if certified > 0.0 { 100.0 * part / certified } else { 0.0 };
@@ -116,13 +116,13 @@ fn tell(
     writeln!(out, "  parts          {:>9}     {fall_apart}", components.count)?;
     writeln!(out, "  the largest    {largest:>9.1} km  {:.1} %", share(largest))?;
     if let Some((edge, then)) = opened {
-        let more = |a: &[bool], b: &[bool]| km(network, |i| a[i] && !b[i] && i != *edge as usize);
+        let more = |a: &[bool], b: &[bool]| km(network, |i| a[i] && !b[i] && i != edge.index());
         let (more_there, more_back) = (more(&then.there, &now.there), more(&then.and_back, &now.and_back));
         let name = printable(&route::title(network, PartKind::Edge(*edge)));
         let text = format!(
             "If edge {} ({name}) and the turns at it were safe, {more_there:.1} km more could be reached, and {more_back:.1} km \
              more with the way back.",
-            network.edges[*edge as usize].id
+            network.edges[edge.index()].id
         );
         writeln!(out, "\n{}", wrapped(&text, "  "))?;
     }
@@ -142,7 +142,7 @@ fn geojson(
     let mut features = Vec::new();
     for (i, edge) in network.edges.iter().enumerate() {
         let opens = opened.is_some_and(|then| then.there[i] && !now.there[i]);
-        if !inputs.driver.permits.edge(i as u32) && !opens {
+        if !inputs.driver.permits.edge(EdgeNo::at(i)) && !opens {
             continue;
         }
         let reach = match (now.and_back[i], now.there[i], opens) {
@@ -163,7 +163,7 @@ fn geojson(
                 "component": components.of[i],
                 "length_m": network.length_m(edge),
                 "rsc_m": inputs.driver.permits.edges[i].rsc_m,
-                "title": route::title(network, PartKind::Edge(i as u32)),
+                "title": route::title(network, PartKind::Edge(EdgeNo::at(i))),
             },
         }));
     }

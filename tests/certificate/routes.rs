@@ -9,7 +9,7 @@ use netcert_testing::demo::demo;
 use netcert_testing::extracts::extract;
 use netcert_testing::routing::{Driver, Region};
 
-use netcert::network::MovementKind;
+use netcert::network::{EdgeNo, MovementKind};
 use netcert::osm::LonLat;
 use netcert::osm::facts::Policy;
 use netcert::route::{Measure, PartKind, Position, Question, Route};
@@ -86,15 +86,15 @@ fn turns(route: &Route) -> usize {
 }
 
 /// The middle of an edge's longest piece.
-fn middle(region: &Region, edge: u32) -> Position {
-    let line: Vec<_> = region.network.positions(&region.network.edges[edge as usize]).map(LonLat::degrees).collect();
+fn middle(region: &Region, edge: EdgeNo) -> Position {
+    let line: Vec<_> = region.network.positions(&region.network.edges[edge.index()]).map(LonLat::degrees).collect();
     let length = |pair: &&[(f64, f64)]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
     let [a, b] = line.windows(2).max_by(|p, q| length(p).total_cmp(&length(q))).unwrap() else { unreachable!() };
     Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
 }
 
 /// Both ends of a walk over safe edges and movements that begins with a safe turn.
-fn walk(region: &Region, driver: &Driver, draw: &mut Draw, first: usize) -> [u32; 2] {
+fn walk(region: &Region, driver: &Driver, draw: &mut Draw, first: usize) -> [EdgeNo; 2] {
     let movements = region.movements.all();
     let allowed = |k: usize| {
         let movement = &movements[k];
@@ -105,9 +105,9 @@ fn walk(region: &Region, driver: &Driver, draw: &mut Draw, first: usize) -> [u32
     };
     let (mut from, mut to) = (movements[first].from, movements[first].to);
     for _ in 0..draw.below(WALKED) {
-        let next: Vec<u32> =
+        let next: Vec<EdgeNo> =
             (0..movements.len()).filter(|k| movements[*k].from == to && allowed(*k)).map(|k| movements[k].to).collect();
-        let before: Vec<u32> = (0..movements.len())
+        let before: Vec<EdgeNo> = (0..movements.len())
             .filter(|k| movements[*k].to == from && allowed(*k))
             .map(|k| movements[k].from)
             .collect();

@@ -1,6 +1,6 @@
 //! Roads that end at +180° and −180° at one latitude are one road.
 
-use netcert::network::{Network, build};
+use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::facts::{Jurisdiction, Rules, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
@@ -54,12 +54,12 @@ fn a_road_goes_on_over_the_180th_meridian() {
     let (nodes, ways) = fiji();
     let network = network(&nodes, &ways);
     let find = |way: i64, from: i64, to: i64| {
-        edges(&network).iter().position(|e| (e.1, e.2, e.3) == (way, from, to)).unwrap_or_else(|| panic!("{from} {to}"))
-            as u32
+        let found = edges(&network).iter().position(|e| (e.1, e.2, e.3) == (way, from, to));
+        EdgeNo::at(found.unwrap_or_else(|| panic!("{from} {to}")))
     };
     let (before, after) = (find(11, 2, 3), find(12, 3, 5));
     find(12, 5, 3);
-    let stroke = network.strokes_of_edges()[after as usize];
+    let stroke = network.strokes_of_edges()[after.index()];
     let range = network.strokes[stroke as usize].approach.clone();
     let approach = &network.stroke_edges[range.start as usize..range.end as usize];
     assert!(approach.contains(&before), "{approach:?}");

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
-use netcert::network::{Cell, Network, build};
+use netcert::network::{Cell, EdgeNo, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, NodeTable, Way};
@@ -168,7 +168,7 @@ struct Owned {
 
 fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Owned {
     let mut owned = Owned::default();
-    let id = |edge: u32| network.edges[edge as usize].id;
+    let id = |edge: EdgeNo| network.edges[edge.index()].id;
     let mut stroke_of = BTreeMap::new();
     for stroke in &network.strokes {
         let ids = |range: &std::ops::Range<u32>| -> Vec<i64> {
@@ -180,8 +180,8 @@ fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Ow
             stroke_of.insert(edge, format!("{last:?} {:?} {}", ids(&stroke.edges), stroke.closed));
         });
     }
-    let here = |edge: u32| own.contains(&network.cell(&network.edges[edge as usize]));
-    for (edge, e) in (0_u32..).zip(&network.edges).filter(|(edge, _)| here(*edge)) {
+    let here = |edge: EdgeNo| own.contains(&network.cell(&network.edges[edge.index()]));
+    for (edge, e) in network.numbered_edges().filter(|(edge, _)| here(*edge)) {
         let line: Vec<LonLat> = network.positions(e).collect();
         let text = format!(
             "{} {} {:?} {:?} {:?} {} {}",
@@ -215,14 +215,14 @@ fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Ow
     let mut verdicts = vec![vec![Verdict::Unknown(UnknownReason::Geometry); network.edges.len()]];
     let job = Job { network, models, settings: &settings };
     let outcome = certify_network(&job, &Silent, |_, made: &EdgeCertificate| {
-        verdicts[0][made.edge as usize] = made.conclusion.verdict;
+        verdicts[0][made.edge.index()] = made.conclusion.verdict;
         if here(made.edge) {
             owned.certificates.insert(id(made.edge), format!("{:?}", made.conclusion));
         }
         Ok::<(), ()>(())
     })
     .unwrap();
-    for (edge, measure) in (0_u32..).zip(&outcome.measures).filter(|(edge, _)| here(*edge)) {
+    for (edge, measure) in EdgeNo::all().zip(&outcome.measures).filter(|(edge, _)| here(*edge)) {
         owned.certificates.get_mut(&id(edge)).unwrap().push_str(&format!("{measure:?}"));
     }
     let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings: &settings };

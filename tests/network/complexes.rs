@@ -9,7 +9,7 @@ use netcert_testing::junctions::Drawn;
 use netcert_testing::routing::Region;
 
 use geo::{BooleanOps as _, BoundingRect as _, Distance as _, Euclidean};
-use netcert::network::PassageKind;
+use netcert::network::{EdgeNo, PassageKind};
 use netcert::osm::Via;
 use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::route::{Measure, PartKind, Position, Question, passes_over};
@@ -43,8 +43,8 @@ fn drawn(map: &AsciiMap) -> Drawn {
 /// The ends of all passages, such as `NS`.
 fn names(drawn: &Drawn) -> Vec<String> {
     let node = |id: i64| u32::try_from(id).ok().and_then(char::from_u32).unwrap();
-    let edge = |edge: u32| &drawn.network.edges[edge as usize];
-    let name = |from: u32, to: u32| [node(edge(from).from_node), node(edge(to).to_node)].iter().collect();
+    let edge = |edge: EdgeNo| &drawn.network.edges[edge.index()];
+    let name = |from: EdgeNo, to: EdgeNo| [node(edge(from).from_node), node(edge(to).to_node)].iter().collect();
     let mut names: Vec<String> = drawn.passages().iter().map(|t| name(t.movement.from, t.movement.to)).collect();
     names.sort();
     names
@@ -118,7 +118,7 @@ fn a_route_leads_across_a_complex_as_one_movement() {
     let driver = region.driver("EU-SEMI16.5");
     let edge = |ends: &str| ascii_map::edge(&region.network, ends);
     let on = |ends: &str| {
-        let line: Vec<_> = region.network.positions(&region.network.edges[edge(ends) as usize]).collect();
+        let line: Vec<_> = region.network.positions(&region.network.edges[edge(ends).index()]).collect();
         let (a, b) = (line[0].degrees(), line[1].degrees());
         Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
     };
@@ -144,7 +144,7 @@ fn the_area_of_a_complex_is_road_or_corner() {
         let places: Vec<_> = ["Wa", "ab", "bE", "Na", "bS"]
             .iter()
             .map(|ends| {
-                let edge = &drawn.network.edges[ascii_map::edge(&drawn.network, ends) as usize];
+                let edge = &drawn.network.edges[ascii_map::edge(&drawn.network, ends).index()];
                 made.frame.forward(&drawn.network.positions(edge).collect::<Vec<_>>()).unwrap()
             })
             .collect();

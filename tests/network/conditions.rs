@@ -21,7 +21,7 @@ fn region(map: &AsciiMap, kerb_m: f64) -> Region {
 
 /// The middle of the first piece of an edge.
 fn on(region: &Region, ends: &str) -> Position {
-    let edge = ascii_map::edge(&region.network, ends) as usize;
+    let edge = ascii_map::edge(&region.network, ends).index();
     let line: Vec<_> = region.network.positions(&region.network.edges[edge]).collect();
     let (a, b) = (line[0].degrees(), line[1].degrees());
     Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }

@@ -53,7 +53,7 @@ fn a_street_is_no_wider_where_buses_may_come_against_it() {
                 assert!(same, "{tags}, {policy:?}, {ends}: other widths, or a stroke of another length");
             }
         }
-        assert!(with_buses.section(&with_buses.edges[edge(&with_buses, "CB") as usize]).lane.is_none());
+        assert!(with_buses.section(&with_buses.edges[edge(&with_buses, "CB").index()]).lane.is_none());
     }
 }
 

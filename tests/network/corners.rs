@@ -174,7 +174,7 @@ fn a_narrow_place_at_a_corner_counts_on_both_sides() {
     let (network, account) = built(&AsciiMap::drawn(20.0, CORNER).way("ABC", ROAD).point('B', choker));
     assert_eq!(account.narrowed_edges, 4);
     let vertex = |ends: &str| {
-        let edge = &network.edges[edge(&network, ends) as usize];
+        let edge = &network.edges[edge(&network, ends).index()];
         network.narrowings[edge.narrowings.start as usize].vertex
     };
     assert_eq!([vertex("AB"), vertex("BC")], [1, 0]);
@@ -209,7 +209,7 @@ fn region(map: &AsciiMap) -> Region {
 fn route(region: &Region, driver: &routing::Driver, ends: [&str; 2]) -> Answer {
     let middle = |ends: &str| {
         let line: Vec<_> =
-            region.network.positions(&region.network.edges[edge(&region.network, ends) as usize]).collect();
+            region.network.positions(&region.network.edges[edge(&region.network, ends).index()]).collect();
         let (a, b) = (line[0].degrees(), line[1].degrees());
         Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
     };
@@ -225,7 +225,7 @@ fn a_wide_road_with_a_corner_is_driven_as_edge_turn_and_edge() {
     let on = |ends: &str| edge(&region.network, ends);
     for [from, to] in [["AB", "BC"], ["CB", "BA"]] {
         for ends in [from, to] {
-            assert_eq!(driver.permits.edges[on(ends) as usize].verdict, Verdict::Safe, "{ends}");
+            assert_eq!(driver.permits.edges[on(ends).index()].verdict, Verdict::Safe, "{ends}");
         }
         let answer = route(&region, &driver, [from, to]);
         let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
@@ -242,7 +242,7 @@ fn a_narrow_road_with_a_corner_is_safe_up_to_it_and_no_route_goes_round() {
     let region = region(&bent("highway=residential width=5"));
     let driver = region.driver("EU-SEMI16.5");
     for ends in ["AB", "BC"] {
-        assert_eq!(driver.permits.edges[edge(&region.network, ends) as usize].verdict, Verdict::Safe, "{ends}");
+        assert_eq!(driver.permits.edges[edge(&region.network, ends).index()].verdict, Verdict::Safe, "{ends}");
     }
     assert!(route(&region, &driver, ["AB", "BC"]).routes.is_empty());
 }

@@ -6,7 +6,7 @@ use netcert_testing::extracts::extract;
 use std::collections::HashMap;
 
 use netcert::corridor::{Params, stroke_corridor};
-use netcert::network::{Edge, Network, Road, Stroke};
+use netcert::network::{Edge, EdgeNo, Network, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
 use netcert::verdict::UnknownReason;
@@ -40,7 +40,7 @@ fn network(file: &str) -> Option<Network> {
         n.shapes.extend(shape);
         n.roads.push(road(way.id.0, section));
         n.edges.push(edge(index, start..n.shapes.len() as u32));
-        n.stroke_edges.push(index);
+        n.stroke_edges.push(EdgeNo::new(index));
         n.strokes.push(Stroke { approach: 0..0, edges: index..index + 1, closed: false });
     }
     Some(n)

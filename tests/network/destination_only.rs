@@ -4,7 +4,7 @@ use netcert_testing::ascii_map;
 use netcert_testing::catalogue::catalogued;
 
 use ascii_map::{AsciiMap, built, node_of};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::route::*;
 use netcert::stop::Stop;
 
@@ -39,8 +39,8 @@ fn graph(map: &AsciiMap) -> Graph {
 
 fn edges(network: &Network, drive: &Drive) -> String {
     let end = |node: i64| node_of(node);
-    let first = drive.edges.first().map(|&e| end(network.edges[e as usize].from_node));
-    first.into_iter().chain(drive.edges.iter().map(|&e| end(network.edges[e as usize].to_node))).collect()
+    let first = drive.edges.first().map(|&e| end(network.edges[e.index()].from_node));
+    first.into_iter().chain(drive.edges.iter().map(|&e| end(network.edges[e.index()].to_node))).collect()
 }
 
 /// The way over these edges in order, or `-`.
@@ -132,16 +132,16 @@ fn reach_does_not_pass_through() {
     .way("LA", ROAD)
     .way("MF", ROAD);
     let graph = graph(&map);
-    let edge = |ends: &str| ascii_map::edge(graph.network(), ends) as usize;
+    let edge = |ends: &str| ascii_map::edge(graph.network(), ends).index();
     let access = graph.open_access();
-    let found = reach(&graph, &access, &[edge("AB") as u32]);
+    let found = reach(&graph, &access, &[EdgeNo::at(edge("AB"))]);
     for (ends, there, back) in
         [("BC", true, false), ("CD", true, false), ("DE", true, false), ("EF", false, false), ("BA", true, true)]
     {
         assert_eq!((found.there[edge(ends)], found.and_back[edge(ends)]), (there, back), "{ends}");
     }
     // From within, both sides can be reached; from the far side nothing leads back.
-    let found = reach(&graph, &access, &[edge("CD") as u32, edge("DC") as u32]);
+    let found = reach(&graph, &access, &[EdgeNo::at(edge("CD")), EdgeNo::at(edge("DC"))]);
     assert!(found.there[edge("EF")] && found.there[edge("BA")]);
     assert!(found.and_back[edge("EF")] && found.and_back[edge("BA")]);
     let parts = components(&graph, &access);

@@ -95,7 +95,7 @@ fn networks_of_any_widths_are_certified_with_bounded_work() {
             certify_network(&job, &Silent, |_, made| {
                 certificates += 1;
                 safe += u64::from(made.conclusion.verdict == Verdict::Safe);
-                edges[0][made.edge as usize] = made.conclusion.verdict;
+                edges[0][made.edge.index()] = made.conclusion.verdict;
                 Ok::<(), ()>(())
             })
             .unwrap();

@@ -93,7 +93,7 @@ fn built(extract: Extract) -> (Network, NetworkAccount) {
 
 fn stroke_edges(network: &Network, range: &std::ops::Range<u32>) -> Vec<Edge> {
     let edges = &network.stroke_edges[range.start as usize..range.end as usize];
-    edges.iter().map(|&e| network.edges[e as usize].clone()).collect()
+    edges.iter().map(|&e| network.edges[e.index()].clone()).collect()
 }
 
 fn joined(edges: &[Edge]) -> bool {
@@ -110,7 +110,7 @@ proptest! {
         for stroke in &network.strokes {
             prop_assert!(!stroke.edges.is_empty());
             for &edge in &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
-                seen[edge as usize] += 1;
+                seen[edge.index()] += 1;
             }
         }
         prop_assert!(seen.iter().all(|&n| n == 1), "{:?}", seen);

@@ -182,7 +182,7 @@ fn a_crossing_of_hundreds_of_nodes_has_an_area_of_a_few() {
     }
     let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
     let turn = drawn.facts().into_iter().find(|turn| {
-        let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge as usize]);
+        let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge.index()]);
         from.from_node == i64::from(u32::from('E')) && to.to_node == i64::from(u32::from(on[101]))
     });
     let made = netcert::turns::corridors_of(

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use netcert::certify::{Job, TurnCase, best_of, certify_network};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::osm::facts::Policy;
 use netcert::reporter::Silent;
 use netcert::rows::EdgeCertificate;
@@ -37,9 +37,9 @@ fn widened(path: &Path, vehicle: &str, policy: Policy) -> (usize, usize, usize) 
     let model = Model::new(&catalogued(vehicle)).unwrap();
     let settings = Settings { needs: Needs::Edges, ..region.settings.clone() };
     let mut network = region.network.clone();
-    let mut by_stroke: BTreeMap<usize, Vec<(u32, f64)>> = BTreeMap::new();
+    let mut by_stroke: BTreeMap<usize, Vec<(EdgeNo, f64)>> = BTreeMap::new();
     let (mut needs, mut none) = (0, 0);
-    let stroke_of = |edge: u32| {
+    let stroke_of = |edge: EdgeNo| {
         let of = |range: &std::ops::Range<u32>| {
             region.network.stroke_edges[range.start as usize..range.end as usize].contains(&edge)
         };
@@ -59,14 +59,14 @@ fn widened(path: &Path, vehicle: &str, policy: Policy) -> (usize, usize, usize) 
         let stroke = &region.network.strokes[stroke];
         let all = [&stroke.edges, &stroke.approach].map(|range| range.start as usize..range.end as usize);
         for &edge in all.into_iter().flat_map(|range| &region.network.stroke_edges[range]) {
-            let facts = &region.network.edges[edge as usize];
+            let facts = &region.network.edges[edge.index()];
             network.site.set_section(facts, region.network.section(facts).at_least(policy, need_m));
         }
     };
     let (mut held, mut alone) = (0, Vec::new());
     while !by_stroke.is_empty() {
         network.site = region.network.site.clone();
-        let mut asked: BTreeMap<u32, (usize, f64)> = BTreeMap::new();
+        let mut asked: BTreeMap<EdgeNo, (usize, f64)> = BTreeMap::new();
         for (&stroke, edges) in &mut by_stroke {
             let (_, need_m) = edges[0];
             asked.extend(edges.extract_if(.., |(_, other_m)| *other_m == need_m).map(|(edge, m)| (edge, (stroke, m))));
@@ -161,9 +161,9 @@ fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
             continue;
         }
         asked += 1;
-        let lines: Vec<(u32, Arc<StrokeLine>)> =
+        let lines: Vec<(EdgeNo, Arc<StrokeLine>)> =
             [from, to].into_iter().filter_map(|edge| Some((edge, strokes.line_of(edge).ok()?))).collect();
-        let line = |edge: u32| {
+        let line = |edge: EdgeNo| {
             let found = lines.iter().find(|(of, _)| *of == edge);
             found.map(|(_, line)| line.as_ref()).ok_or(UnknownReason::Geometry)
         };
@@ -174,7 +174,7 @@ fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
             continue;
         };
         let mut network = region.network.clone();
-        let edge = |edge: u32| &region.network.edges[edge as usize];
+        let edge = |edge: EdgeNo| &region.network.edges[edge.index()];
         network.site.set_kerb(edge(from).to_node, Some([edge(from), edge(to)]), radius_m);
         let made = turn_on(
             &network,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use netcert::network::{Division, Ground, Network, Portion, PortionRestriction, StrokeOptions};
+use netcert::network::{Division, EdgeNo, Ground, Network, Portion, PortionRestriction, StrokeOptions};
 use netcert::osm::facts::{Countries, CrossSection, Jurisdiction, WayFacts, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat};
@@ -23,8 +23,8 @@ fn ground(extract: Extract, countries: &Countries) -> Ground<Places<'_>, Section
 }
 
 /// An edge with all that its row says, its road included.
-fn edge_text(network: &Network, edge: u32) -> String {
-    let e = &network.edges[edge as usize];
+fn edge_text(network: &Network, edge: EdgeNo) -> String {
+    let e = &network.edges[edge.index()];
     let road = network.road(e);
     let name = road.name.map(|name| network.strings.text(name));
     let reference = road.reference.map(|name| network.strings.text(name));
@@ -46,10 +46,10 @@ fn edge_text(network: &Network, edge: u32) -> String {
 }
 
 /// Strokes by their first edge, with indices of the whole network. Of an approach only the end is driven.
-fn strokes(portion: &Portion) -> BTreeMap<u32, String> {
+fn strokes(portion: &Portion) -> BTreeMap<EdgeNo, String> {
     let text = |stroke: u32| {
         let stroke = &portion.network.strokes[stroke as usize];
-        let edges = |range: &std::ops::Range<u32>| -> Vec<u32> {
+        let edges = |range: &std::ops::Range<u32>| -> Vec<EdgeNo> {
             let edges = &portion.network.stroke_edges[range.start as usize..range.end as usize];
             edges.iter().map(|&edge| portion.edge(edge)).collect()
         };
@@ -83,7 +83,7 @@ pub(crate) fn compare(extract: &Extract, most: u64) -> usize {
             let index = portion.edge(edge);
             assert!(edges.insert(index, number).is_none(), "edge {index} has two owners");
             assert_eq!(edge_text(&portion.network, edge), edge_text(&whole.network, index));
-            assert_eq!(portion.road(e.road), whole.network.edges[index as usize].road);
+            assert_eq!(portion.road(e.road), whole.network.edges[index.index()].road);
         }
         all_strokes.extend(strokes(&portion));
         all_restrictions.extend(restrictions(&portion));

@@ -7,15 +7,15 @@ use netcert_testing::ascii_map;
 use netcert_testing::extracts::extract;
 
 use ascii_map::{AsciiMap, built, id_of, no_sections, node_of, somewhere};
-use netcert::network::{MovementKind, Network, build};
+use netcert::network::{EdgeNo, MovementKind, Network, build};
 use netcert::osm::Via;
 use netcert::osm::pbf::read_extract;
 
 const ROAD: &str = "highway=residential";
 const ONE_WAY: &str = "highway=residential oneway=yes";
 
-fn nodes(network: &Network, edges: &[u32]) -> String {
-    let edge = |e: &u32| &network.edges[*e as usize];
+fn nodes(network: &Network, edges: &[EdgeNo]) -> String {
+    let edge = |e: &EdgeNo| &network.edges[e.index()];
     let first = node_of(edge(&edges[0]).from_node);
     std::iter::once(first).chain(edges.iter().map(|e| node_of(edge(e).to_node))).collect()
 }
@@ -458,7 +458,7 @@ fn real_restrictions_are_all_accounted_for() {
     for restriction in &network.restrictions {
         let edges = network.sequence(restriction);
         assert!(edges.len() >= 2);
-        let joined = |w: &[u32]| network.edges[w[0] as usize].to_node == network.edges[w[1] as usize].from_node;
+        let joined = |w: &[EdgeNo]| network.edges[w[0].index()].to_node == network.edges[w[1].index()].from_node;
         assert!(edges.windows(2).all(joined), "{restriction:?}");
     }
 }
@@ -483,7 +483,7 @@ fn a_way_that_is_named_often_takes_few_steps_and_leaves_nothing_open() {
     let (network, _) = built(&no_turn);
     // Nothing is known of the destination: the movement onto the way is closed rather than left open.
     let onto = |network: &Network| {
-        let first = network.edges.iter().position(|e| e.from_node == id_of('A')).unwrap() as u32;
+        let first = network.edges.iter().position(|e| e.from_node == id_of('A')).map(EdgeNo::at).unwrap();
         network.movements().all().iter().find(|m| m.from == first && m.forbidden.is_some()).is_some()
     };
     assert!(onto(&network));

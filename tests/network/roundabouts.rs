@@ -2,6 +2,7 @@
 //!
 //! Widths are tagged, and kerb radii are the test's own.
 
+use netcert::network::EdgeNo;
 use netcert_testing::ascii_map::{self, AsciiMap, id_of};
 use netcert_testing::catalogue::catalogued;
 use netcert_testing::junctions::Drawn;
@@ -40,8 +41,8 @@ fn every_arm_leads_to_every_other_one() {
         let passage = drawn.passage(ends);
         assert_eq!(passage.through.len(), arcs, "{ends}");
         assert!((passage.angle_deg - angle_deg).abs() < 2.0, "{ends} {}", passage.angle_deg);
-        let edge = |edge: u32| &drawn.network.edges[edge as usize];
-        let way: Vec<u32> = [passage.movement.from]
+        let edge = |edge: EdgeNo| &drawn.network.edges[edge.index()];
+        let way: Vec<EdgeNo> = [passage.movement.from]
             .into_iter()
             .chain(passage.through.iter().copied())
             .chain([passage.movement.to])
@@ -115,7 +116,7 @@ fn one_way_arms_only_enter_or_leave() {
     let drawn = Drawn::new(&map, TrafficSide::Right, 12.0);
     // Four ways in and three out; no exit where the vehicle entered.
     assert_eq!(drawn.passages().len(), 3 + 3 * 2);
-    let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to as usize].to_node != id_of('W');
+    let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to.index()].to_node != id_of('W');
     assert!(drawn.passages().iter().all(ends));
 }
 
@@ -215,7 +216,7 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
     let (over, past) = (drawn.passage("WE"), drawn.passage("EN"));
     let of = |verdict: Verdict| {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
-        edges[over.through[1] as usize] = verdict;
+        edges[over.through[1].index()] = verdict;
         let all = certified(&drawn, "AGV-TUG4", &edges, 2);
         [&over, &past].map(|t| all.iter().find(|c| turns[c.turn as usize].id == t.id).unwrap().conclusion.verdict)
     };
@@ -235,7 +236,7 @@ fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
         (Verdict::Unknown(UnknownReason::Limit), Verdict::Unknown(UnknownReason::Limit)),
     ] {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
-        over.through.iter().for_each(|&arc| edges[arc as usize] = on_the_ring);
+        over.through.iter().for_each(|&arc| edges[arc.index()] = on_the_ring);
         let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
         let verdict = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap().conclusion.verdict;
         assert_eq!(verdict, expected, "arcs {on_the_ring:?}");
@@ -256,7 +257,7 @@ fn a_passage_over_an_arc_that_is_closed_at_night_is_certified_for_the_day() {
     let time = Verdict::Unknown(UnknownReason::Time);
     for on_the_ring in [time, Verdict::Unsafe(UnsafeReason::Width)] {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
-        over.through.iter().for_each(|&arc| edges[arc as usize] = on_the_ring);
+        over.through.iter().for_each(|&arc| edges[arc.index()] = on_the_ring);
         let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
         let made = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap();
         assert_eq!(made.conclusion.verdict, time, "arcs {on_the_ring:?}");

@@ -8,7 +8,7 @@ use netcert_testing::roundabout;
 use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
-use netcert::network::{Movement, PassageKind};
+use netcert::network::{EdgeNo, Movement, PassageKind};
 use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::route::*;
 use netcert::stet::certify_planned;
@@ -30,13 +30,13 @@ fn roundabout() -> AsciiMap {
     roundabout::map(20.0, tags, tags, TrafficSide::Right)
 }
 
-fn edge(region: &Region, ends: &str) -> u32 {
+fn edge(region: &Region, ends: &str) -> EdgeNo {
     ascii_map::edge(&region.network, ends)
 }
 
 /// The middle of the first piece of an edge.
 fn on(region: &Region, ends: &str) -> Position {
-    let line: Vec<_> = region.network.positions(&region.network.edges[edge(region, ends) as usize]).collect();
+    let line: Vec<_> = region.network.positions(&region.network.edges[edge(region, ends).index()]).collect();
     let (a, b) = (line[0].degrees(), line[1].degrees());
     Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
 }
@@ -224,7 +224,7 @@ fn an_alternative_differs_and_costs_what_it_costs() {
     let north = edge(&region, "AB");
     assert!(first.drive.edges.contains(&north) && !second.drive.edges.contains(&north));
     assert!(answer.routes.iter().all(|route| route.certificate.result.safe()));
-    driver.permits.edges[north as usize] = Permit::UNKNOWN;
+    driver.permits.edges[north.index()] = Permit::UNKNOWN;
     let [only] = ask(&region, &driver, ["WA", "BE"], 0).routes.try_into().unwrap();
     assert_eq!((only.cost, &only.drive), (second.cost, &second.drive), "no dearer than if it were the first");
     assert!(second.cost > first.cost && second.cost < 2 * first.cost);
@@ -239,8 +239,8 @@ fn what_blocks_is_few_places_or_few_metres_whichever_is_less() {
     let south = [edge(&region, "Aq"), edge(&region, "qB")];
     let mut obstacles = |north_m: Option<f64>, south_m: f64| {
         let narrow = |rsc_m| Permit { verdict: Verdict::Unsafe(UnsafeReason::Width), rsc_m };
-        driver.permits.edges[north as usize] = narrow(north_m.map(|m| -m));
-        south.iter().for_each(|&edge| driver.permits.edges[edge as usize] = narrow(Some(-south_m)));
+        driver.permits.edges[north.index()] = narrow(north_m.map(|m| -m));
+        south.iter().for_each(|&edge| driver.permits.edges[edge.index()] = narrow(Some(-south_m)));
         let answer = ask(&region, &driver, ["WA", "BE"], 0);
         assert!(answer.routes.is_empty() && answer.refuted.is_empty());
         let obstacles = answer.obstacles.unwrap();

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use ascii_map::{AsciiMap, built};
-use netcert::network::{MovementKind, Network, Restriction};
+use netcert::network::{EdgeNo, MovementKind, Network, Restriction};
 use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
 use netcert::stop::Stop;
@@ -52,8 +52,8 @@ fn grid(streets: &[(usize, bool, u8)], rings: &[usize]) -> Network {
 }
 
 /// Dijkstra over nodes, from the end of `from` to the start of `to`. It shares only the edges' costs with the library.
-fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64> {
-    let edge = |e: u32| &network.edges[e as usize];
+fn by_nodes(network: &Network, graph: &Graph, from: EdgeNo, to: EdgeNo) -> Option<u64> {
+    let edge = |e: EdgeNo| &network.edges[e.index()];
     if from == to {
         return Some(graph.cost(from));
     }
@@ -64,7 +64,7 @@ fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64>
             continue;
         }
         reached.insert(node, cost);
-        for (i, e) in (0..).zip(&network.edges).filter(|(_, e)| e.from_node == node) {
+        for (i, e) in EdgeNo::all().zip(&network.edges).filter(|(_, e)| e.from_node == node) {
             open.insert((cost + graph.cost(i), e.to_node));
         }
     }
@@ -74,19 +74,19 @@ fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64>
 /// Everything barred: single edges, steps from one edge into another, sequences, passages.
 #[derive(Default)]
 struct Barred {
-    edges: BTreeSet<u32>,
-    pairs: BTreeSet<(u32, u32)>,
-    sequences: Vec<Vec<u32>>,
-    passages: BTreeSet<(u32, u32)>,
+    edges: BTreeSet<EdgeNo>,
+    pairs: BTreeSet<(EdgeNo, EdgeNo)>,
+    sequences: Vec<Vec<EdgeNo>>,
+    passages: BTreeSet<(EdgeNo, EdgeNo)>,
 }
 
 /// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong. Over a passage it goes edge
 /// by edge, on arcs that need not be open.
-fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: u32, to: u32) -> Option<u64> {
+fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: EdgeNo, to: EdgeNo) -> Option<u64> {
     if barred.edges.contains(&from) {
         return None;
     }
-    let stopped = |history: &[u32]| barred.sequences.iter().any(|sequence| history.ends_with(sequence));
+    let stopped = |history: &[EdgeNo]| barred.sequences.iter().any(|sequence| history.ends_with(sequence));
     let mut done = BTreeSet::new();
     let mut open = BTreeSet::from([(graph.cost(from), vec![from])]);
     while let Some((cost, history)) = open.pop_first() {
@@ -97,8 +97,8 @@ fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: u32, to
         if last == to {
             return Some(cost);
         }
-        let last_node = network.edges[last as usize].to_node;
-        let mut ways: Vec<Vec<u32>> = (0..)
+        let last_node = network.edges[last.index()].to_node;
+        let mut ways: Vec<Vec<EdgeNo>> = EdgeNo::all()
             .zip(&network.edges)
             .filter(|(i, e)| e.from_node == last_node && !barred.pairs.contains(&(last, *i)))
             .map(|(i, _)| vec![i])
@@ -123,7 +123,7 @@ fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: u32, to
     None
 }
 
-fn forbid(network: &mut Network, sequence: &[u32]) {
+fn forbid(network: &mut Network, sequence: &[EdgeNo]) {
     let start = network.restriction_edges.len() as u32;
     network.restriction_edges.extend(sequence);
     let edges = start..network.restriction_edges.len() as u32;
@@ -137,7 +137,7 @@ fn wide_open(graph: &Graph) -> Access {
     Access { movements: vec![0; access.movements.len()], passages: vec![0; access.passages.len()], ..access }
 }
 
-fn shortest(graph: &Graph, access: &Access, from: u32, to: u32) -> Option<u64> {
+fn shortest(graph: &Graph, access: &Access, from: EdgeNo, to: EdgeNo) -> Option<u64> {
     let goal = [Goal { edge: to, share: 1.0 }];
     let found = search(graph, access, &[Start::new(from, 0.0)], &goal, SearchExtent::NearestGoal, &Stop::never())
         .unwrap()
@@ -146,7 +146,7 @@ fn shortest(graph: &Graph, access: &Access, from: u32, to: u32) -> Option<u64> {
     let sum: u64 = edges.iter().map(|&edge| graph.cost(edge)).sum();
     assert_eq!(sum, found.cost, "the way costs what it says");
     assert_eq!((edges.first(), edges.last()), (Some(&from), Some(&to)));
-    let place = |e: u32| &graph.network().edges[e as usize];
+    let place = |e: EdgeNo| &graph.network().edges[e.index()];
     assert!(edges.windows(2).all(|pair| place(pair[0]).to_node == place(pair[1]).from_node), "without a gap");
     for join in found.drive.joins().filter(|join| !join.arcs.is_empty()) {
         let passage = graph.movements().passage(join.from, join.to).map(|place| &graph.movements().passages()[place]);
@@ -175,7 +175,7 @@ proptest! {
         let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), Measure::Distance);
         let access = wide_open(&graph);
         for (from, to) in ends {
-            let (from, to) = (from % count, to % count);
+            let [from, to] = [from, to].map(|end| EdgeNo::new(end % count));
             prop_assert_eq!(shortest(&graph, &access, from, to), by_nodes(network, &graph, from, to));
         }
     }
@@ -195,7 +195,7 @@ proptest! {
         let mut barred = Barred::default();
         for _ in 0..count / 2 {
             // A random walk of three or four edges becomes a forbidden sequence.
-            let mut walk = vec![draw.below(count as usize) as u32];
+            let mut walk = vec![EdgeNo::at(draw.below(count as usize))];
             for _ in 0..2 + draw.below(2) {
                 let next = movements.after(walk[walk.len() - 1]);
                 if !next.is_empty() {
@@ -223,7 +223,7 @@ proptest! {
                 barred.passages.insert((passage.from, passage.to));
             }
         }
-        for (slot, (edge, facts)) in access.edges.iter_mut().zip((0..).zip(&network.edges)) {
+        for (slot, (edge, facts)) in access.edges.iter_mut().zip(EdgeNo::all().zip(&network.edges)) {
             // Most roundabouts can be used by passages only.
             if draw.one_in(if network.road(facts).roundabout { 2 } else { 10 }) {
                 *slot = BARRED;
@@ -231,7 +231,7 @@ proptest! {
             }
         }
         for (from, to) in ends {
-            let (from, to) = (from % count, to % count);
+            let [from, to] = [from, to].map(|end| EdgeNo::new(end % count));
             let expected = by_histories(network, &graph, &barred, from, to);
             prop_assert_eq!(shortest(&graph, &access, from, to), expected);
         }
@@ -278,8 +278,8 @@ fn a_slow_short_road_loses_to_a_fast_long_one() {
             &Stop::never(),
         );
         let edges = found.unwrap().remove(0).unwrap().drive.edges;
-        let road = roads.network.road(&roads.network.edges[edges[1] as usize]);
-        let straight = (0..).zip(&roads.network.edges).find(|(_, edge)| edge.road == 1).unwrap().0;
+        let road = roads.network.road(&roads.network.edges[edges[1].index()]);
+        let straight = EdgeNo::all().zip(&roads.network.edges).find(|(_, edge)| edge.road == 1).unwrap().0;
         (road.name.is_none(), graph.cost(straight) as f64 / 1e3)
     }
     let (there, back) = (["AB", "CD"], ["DC", "BA"]);
@@ -318,16 +318,16 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
     let mut access = graph.open_access();
     let ring = ["BC", "CF", "FE", "EB"].map(edge);
     let there = reach(&graph, &access, &[ring[0]]);
-    assert!(ring.iter().all(|&e| there.and_back[e as usize]));
-    let spur = edge("CD") as usize;
+    assert!(ring.iter().all(|&e| there.and_back[e.index()]));
+    let spur = edge("CD").index();
     assert!(there.there[spur] && !there.and_back[spur], "nobody turns back at D");
     let parts = components(&graph, &access);
-    assert!(ring.iter().all(|&e| parts.of[e as usize] == Some(0)));
+    assert!(ring.iter().all(|&e| parts.of[e.index()] == Some(0)));
     assert_ne!(parts.of[spur], Some(0));
 
-    access.edges[ring[2] as usize] = BARRED;
+    access.edges[ring[2].index()] = BARRED;
     let cut = reach(&graph, &access, &[ring[0]]);
-    assert!(!cut.there[ring[3] as usize] && !cut.and_back[ring[1] as usize]);
+    assert!(!cut.there[ring[3].index()] && !cut.and_back[ring[1].index()]);
     let opened = reach(&graph, &with_edge(&graph, &access, ring[2]), &[ring[0]]);
     assert_eq!(opened, there);
 }
@@ -335,9 +335,10 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
 /// Answers for random pairs of places on certified roads.
 fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer> {
     let mut planner = region.planner(driver, Measure::Time);
-    let safe: Vec<u32> = (0..region.network.edges.len() as u32).filter(|&edge| driver.permits.edge(edge)).collect();
+    let safe: Vec<EdgeNo> =
+        EdgeNo::first(region.network.edges.len()).filter(|&edge| driver.permits.edge(edge)).collect();
     let place = |draw: &mut Draw| {
-        let edge = &region.network.edges[safe[draw.below(safe.len())] as usize];
+        let edge = &region.network.edges[safe[draw.below(safe.len())].index()];
         let line: Vec<_> = region.network.positions(edge).collect();
         let (lon, lat) = line[draw.below(line.len())].degrees();
         Position { lon, lat }

@@ -231,7 +231,7 @@ proptest! {
         let forth = corridor(&drawn.network, "AB", Policy::Carriageway);
         let origin = [forth.corridor.x[0], forth.corridor.y[0]];
         for span in &made.spans {
-            let edge = &drawn.network.edges[span.edge as usize];
+            let edge = &drawn.network.edges[span.edge.index()];
             let section = drawn.network.road(edge).sections[usize::from(edge.direction == netcert::osm::facts::Direction::Backward)];
             let most_m = f64::from(section.strip(policy).unwrap().width_m());
             let wider_m = if policy == Policy::Lane { f64::from(section.direction.unwrap().width_m()) } else { most_m };

@@ -34,7 +34,7 @@ fn interchange() -> AsciiMap {
 #[test]
 fn a_road_without_name_is_called_by_what_it_joins() {
     let (network, _) = built(&interchange());
-    let title = |ends: &str| network.title(&network.edges[edge(&network, ends) as usize]);
+    let title = |ends: &str| network.title(&network.edges[edge(&network, ends).index()]);
     assert_eq!(title("Ma"), "A5");
     assert_eq!(title("fc"), "B3;B4 Bergweg");
     assert_eq!(title("ab"), "ramp from A5 to B3/B4");
@@ -42,6 +42,6 @@ fn a_road_without_name_is_called_by_what_it_joins() {
     assert_eq!(title("de"), "link B3/B4 – Gasse");
     assert_eq!(title("ed"), title("de"));
     assert_eq!(title("fg"), "service road at B3/B4");
-    let lonely = network.edges[edge(&network, "xy") as usize].clone();
+    let lonely = network.edges[edge(&network, "xy").index()].clone();
     assert_eq!(network.title(&lonely), format!("service road (way {})", network.road(&lonely).way_id));
 }

@@ -390,7 +390,7 @@ fn a_surveyed_corner_gets_the_hint_of_an_assumed_one() {
     let model = Model::new(&catalogued("EU-SEMI16.5")).unwrap();
     let turn = drawn.turn("EBC");
     let mut surveyed = drawn.network.clone();
-    let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge as usize]);
+    let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge.index()]);
     surveyed.site.set_kerb(from.to_node, Some([from, to]), 3.0);
     let hint =
         |network| explain_turn(network, &turn, &model, &settings, &Stop::never()).unwrap().explanation.hints.kerb;

@@ -1,6 +1,7 @@
 //! The register of measurements: what is measured counts, what sees it is certified again and nothing else, removing it gives back the
 //! map, and a newer ingest keeps it.
 
+use netcert::network::EdgeNo;
 use std::collections::BTreeMap;
 
 use netcert::osm::LonLat;
@@ -409,7 +410,7 @@ fn certificates_of_a_register_that_changed_meanwhile_are_not_stored() {
     let place = drawn(WorkFolder::empty());
     place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
     let mut database = netcert::store::Database::open_to_change(&place.path("demo.gpkg")).unwrap();
-    let edges = database.load_network().unwrap().edges.len() as u32;
+    let edges = database.load_network().unwrap().edges.len();
     let place = place.file("survey.csv", "quantity,value,way_id,source\ncarriageway_width,5,2,a\n");
     place.netcert("evidence add survey.csv").succeeds();
     let run = Run {
@@ -426,12 +427,13 @@ fn certificates_of_a_register_that_changed_meanwhile_are_not_stored() {
     let settings = Settings { policy: Policy::Lane, ..database.settings_of_new_sets().unwrap() };
     let mut replace = || {
         let certificates =
-            (0..edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
+            EdgeNo::first(edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
         database.replace_certificates(&vehicle, &settings, certificates, Vec::new(), None, &run, &[])
     };
     assert!(matches!(replace(), Err(StoreError::RegisterChanged(_))));
     assert!(place.database().certified().unwrap().is_empty());
     database.load_network().unwrap();
-    let certificates = (0..edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
+    let certificates =
+        EdgeNo::first(edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
     database.replace_certificates(&vehicle, &settings, certificates, Vec::new(), None, &run, &[]).unwrap();
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use netcert::corridor::{Corridor, Params, stroke_corridor};
 use netcert::explain::{self, Explanation};
-use netcert::network::Network;
+use netcert::network::{EdgeNo, Network};
 use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::rows::{CertificateRow, EdgeRow};
@@ -111,7 +111,7 @@ fn at_least(corridor: &Corridor, width_m: f64) -> Corridor {
 }
 
 /// The result of an edge in its stroke's corridor, widened.
-fn certified(network: &Network, edge: u32, vehicle: &Vehicle, width_m: f64) -> SpanResult {
+fn certified(network: &Network, edge: EdgeNo, vehicle: &Vehicle, width_m: f64) -> SpanResult {
     let holds = |s: &&netcert::network::Stroke| {
         network.stroke_edges[s.edges.start as usize..s.edges.end as usize].contains(&edge)
     };

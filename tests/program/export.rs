@@ -6,7 +6,7 @@ use netcert_testing::demo::demo;
 use netcert_testing::program;
 
 use netcert::export::{Ask, PermitPolicy, Source};
-use netcert::network::MovementKind;
+use netcert::network::{EdgeNo, MovementKind};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::route::{BARRED, Permits};
 use program::WorkFolder;
@@ -26,16 +26,16 @@ fn an_export_permits_exactly_what_a_route_may_use() {
     let set = database.certified_set("AU-SEMI19", Policy::Lane).unwrap().unwrap();
     let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
     let access = permits.access(&movements);
-    for (edge, &cost) in (0_u32..).zip(&access.edges) {
-        assert_eq!(source.permitted.edges.get(edge), cost != BARRED, "edge {edge}");
+    for (edge, &cost) in EdgeNo::all().zip(&access.edges) {
+        assert_eq!(source.permitted.edges.get(edge.index()), cost != BARRED, "edge {edge}");
     }
     // In the database turns stand in the order of the movements.
     let turns = movements.all().iter().zip(&access.movements).filter(|(m, _)| m.kind == MovementKind::Turn);
     let mut permitted = 0;
     for (turn, (movement, &cost)) in (0_u32..).zip(turns) {
         let by_route =
-            cost != BARRED && [movement.from, movement.to].iter().all(|&e| access.edges[e as usize] != BARRED);
-        assert_eq!(source.permitted.turns.get(turn), by_route, "turn {turn}");
+            cost != BARRED && [movement.from, movement.to].iter().all(|&e| access.edges[e.index()] != BARRED);
+        assert_eq!(source.permitted.turns.get(turn as usize), by_route, "turn {turn}");
         permitted += u32::from(by_route);
     }
     assert!(permitted > 0 && source.permitted.edge_tally.permitted > 100);
@@ -54,8 +54,8 @@ fn options_take_permits_away_and_never_add_one() {
         assert!(fewer.edge_tally.permitted < all.edge_tally.permitted && fewer.edge_tally.permitted > 0);
         assert_eq!(fewer.edge_tally.total(), all.edge_tally.total());
         assert_eq!(fewer.turn_tally.total(), all.turn_tally.total());
-        assert!((0..all.edges.len() as u32).all(|edge| all.edges.get(edge) || !fewer.edges.get(edge)));
-        assert!((0..all.turns.len() as u32).all(|turn| all.turns.get(turn) || !fewer.turns.get(turn)));
+        assert!((0..all.edges.len()).all(|edge| all.edges.get(edge) || !fewer.edges.get(edge)));
+        assert!((0..all.turns.len()).all(|turn| all.turns.get(turn) || !fewer.turns.get(turn)));
     }
 }
 

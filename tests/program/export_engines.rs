@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
 
-use netcert::network::{Network, build};
+use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
@@ -31,7 +31,7 @@ fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
 }
 
 /// Every permitted edge by its places, in driving order.
-fn permitted(place: &WorkFolder) -> (Network, BTreeSet<u32>) {
+fn permitted(place: &WorkFolder) -> (Network, BTreeSet<EdgeNo>) {
     let mut database = place.database();
     let options = QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("AU-SEMI19", Policy::Lane) };
     let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge.index).collect();
@@ -39,7 +39,7 @@ fn permitted(place: &WorkFolder) -> (Network, BTreeSet<u32>) {
 }
 
 /// The last segments of permitted edges from which the only way on is a refused turn.
-fn up_to_refused_corners(place: &WorkFolder, network: &Network, safe: &BTreeSet<u32>) -> BTreeSet<(LonLat, LonLat)> {
+fn up_to_refused_corners(place: &WorkFolder, network: &Network, safe: &BTreeSet<EdgeNo>) -> BTreeSet<(LonLat, LonLat)> {
     let mut ends: BTreeMap<i64, BTreeSet<(u32, bool)>> = BTreeMap::new();
     for edge in &network.edges {
         let forward = edge.direction == Direction::Forward;
@@ -51,8 +51,8 @@ fn up_to_refused_corners(place: &WorkFolder, network: &Network, safe: &BTreeSet<
     let refused = steps.filter(|step| step.arcs.is_none() && step.verdict != Verdict::Safe);
     let corners = refused.filter(|step| safe.contains(&step.from) && safe.contains(&step.to));
     let alone = corners.filter(|step| ends[&step.via_node].len() == 2);
-    let last = |edge: u32| {
-        let mut line = network.positions(&network.edges[edge as usize]).rev();
+    let last = |edge: EdgeNo| {
+        let mut line = network.positions(&network.edges[edge.index()]).rev();
         let (end, before) = (line.next().unwrap(), line.next().unwrap());
         (before, end)
     };
@@ -77,7 +77,7 @@ fn osrm_tables_close_every_segment_but_those_of_permitted_edges() {
     let place_of = |node: i64| extract.nodes.place(node).unwrap();
     let mut open = BTreeSet::new();
     for &edge in &safe {
-        let line: Vec<_> = network.positions(&network.edges[edge as usize]).collect();
+        let line: Vec<_> = network.positions(&network.edges[edge.index()]).collect();
         open.extend(line.windows(2).map(|pair| (pair[0], pair[1])));
     }
     // Where nothing else meets, OSRM has no turn to refuse. The segment that only leads there is closed instead.
@@ -121,13 +121,13 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
         cross_sections(way, place, ring, rules)
     });
     let (old, safe) = permitted(&place);
-    let line = |network: &Network, edge: u32| network.positions(&network.edges[edge as usize]).collect::<Vec<_>>();
+    let line = |network: &Network, edge: EdgeNo| network.positions(&network.edges[edge.index()]).collect::<Vec<_>>();
     let mut open = BTreeSet::new();
     for &edge in &safe {
         open.extend(line(&old, edge).windows(2).map(|pair| (pair[0], pair[1])));
     }
     let mut tagged_open = 0;
-    for (edge, facts) in (0_u32..).zip(&network.edges) {
+    for (edge, facts) in network.numbered_edges() {
         let hgv = facts.legal.hgv;
         for pair in line(&network, edge).windows(2) {
             let permitted = open.contains(&(pair[0], pair[1]));
@@ -234,7 +234,7 @@ fn pgrouting_tables_name_every_edge_and_the_script_beside_them() {
     for (i, line) in edges.lines().enumerate() {
         let fields: Vec<&str> = line.split('\t').collect();
         assert_eq!((fields.len(), fields[0]), (16, (i + 1).to_string().as_str()), "{line}");
-        assert_eq!(fields[5] == "-1", !safe.contains(&(i as u32)), "{line}");
+        assert_eq!(fields[5] == "-1", !safe.contains(&EdgeNo::at(i)), "{line}");
         assert_eq!(fields[5] == "-1", fields[10] != "\\N", "{line}");
     }
     let script = String::from_utf8(place.read("pg/load.sql")).unwrap();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use netcert::account::AccountRow;
-use netcert::network::{Edge, Network, Portion};
+use netcert::network::{Edge, EdgeNo, Network, Portion};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::EdgeRow;
 use netcert::rows::{Bounds, EdgeCertificate, EdgeMeasure, TurnCertificate};
@@ -134,7 +134,7 @@ fn a_query_gives_every_certificate_back_on_the_safe_side() {
         let (edge, wrote) = (&network.edges[index as usize], certificate(index, 1));
         let road = network.road(edge);
         assert_eq!(
-            (row.edge.index, row.edge.id, row.edge.way_id, row.certificate.verdict),
+            (row.edge.index.get(), row.edge.id, row.edge.way_id, row.certificate.verdict),
             (index, edge.id, road.way_id, wrote.conclusion.verdict)
         );
         let limit = network.road(edge).max_speed_km_h[edge.direction as usize];
@@ -261,7 +261,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     let folder = folder();
     let path = folder.path().join("a.gpkg");
     let edges = build(&path, 50, |i, _| i).edges.len() as u32;
-    let unknown = |edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Cut));
+    let unknown = |edge| EdgeCertificate::bare(EdgeNo::new(edge), Verdict::Unknown(UnknownReason::Cut));
     let mut database = Database::open_to_change(&path).unwrap();
     let sets = |database: &mut Database| -> Vec<String> {
         database.certified().unwrap().into_iter().map(|set| set.layer).collect()
@@ -322,7 +322,7 @@ fn a_layer_s_style_comes_and_goes_with_it_and_what_people_saved_stays() {
     let mut database = Database::open_to_change(&path).unwrap();
     let mut certify = |vehicle: &VehicleRecord, policy| {
         let settings = Settings { policy, ..Settings::default() };
-        let unknown = |edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Cut));
+        let unknown = |edge| EdgeCertificate::bare(EdgeNo::new(edge), Verdict::Unknown(UnknownReason::Cut));
         let rows = (0..edges).map(unknown);
         database.replace_certificates(vehicle, &settings, rows, Vec::new(), None, &run(), &[]).unwrap();
     };

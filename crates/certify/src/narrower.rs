@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use rustc_hash::FxHashMap;
 
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{CrossSection, Strip};
 use netcert_roads::turns::TurnFacts;
 
@@ -24,8 +24,8 @@ const FAR_STEPS: i16 = 4;
 
 /// The places of a network where a width was measured: how much farther out a strip is than on the map, metres.
 pub(super) struct MeasuredWidths {
-    /// By the index of the edge, and by the nodes at its ends.
-    edges: FxHashMap<u32, f32>,
+    /// By edge, and by the nodes at its ends.
+    edges: FxHashMap<EdgeNo, f32>,
     nodes: FxHashMap<i64, f32>,
 }
 
@@ -36,7 +36,7 @@ impl MeasuredWidths {
             return None;
         }
         let mut all = Self { edges: FxHashMap::default(), nodes: FxHashMap::default() };
-        for (index, edge) in (0_u32..).zip(&network.edges) {
+        for (index, edge) in network.numbered_edges() {
             let Some(section) = network.site.section(edge) else { continue };
             let more_m = beyond(&section, &network.mapped_section(edge));
             all.edges.insert(index, more_m);
@@ -50,10 +50,10 @@ impl MeasuredWidths {
     /// The most that a strip is farther out than on the map where a turn leads over or past it, metres. `None` if nothing is measured there.
     /// `strokes` has the stroke of each edge.
     pub(super) fn most_m(&self, network: &Network, strokes: &[u32], turn: &TurnFacts) -> Option<f32> {
-        let of_edge = |edge: u32| {
-            let ends = &network.edges[edge as usize];
+        let of_edge = |edge: EdgeNo| {
+            let ends = &network.edges[edge.index()];
             let nodes = [ends.from_node, ends.to_node].into_iter().filter_map(|node| self.nodes.get(&node));
-            let stroke = network.strokes.get(strokes[edge as usize] as usize);
+            let stroke = network.strokes.get(strokes[edge.index()] as usize);
             let ranges = stroke.map(|stroke| [&stroke.edges, &stroke.approach]).into_iter().flatten();
             let edges = ranges.flat_map(|range| &network.stroke_edges[range.start as usize..range.end as usize]);
             nodes.chain(edges.filter_map(|edge| self.edges.get(edge))).copied().reduce(f32::max)

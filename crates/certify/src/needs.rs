@@ -12,7 +12,7 @@ use super::job::Job;
 use super::least::least_of;
 use super::paths::fits;
 use crate::corridor::{Corridor, LaidOut, StrokeCorridor, stroke_corridor};
-use crate::network::{Network, Stroke};
+use crate::network::{EdgeNo, Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
 use crate::settings::Settings;
@@ -47,8 +47,8 @@ pub fn flares(has_m: f64) -> Vec<f64> {
 
 /// An edge of a stroke that is too narrow.
 pub(super) struct Narrow<'r> {
-    /// Index into `Network::edges`.
-    pub(super) edge: u32,
+    /// The edge.
+    pub(super) edge: EdgeNo,
     /// Its result with the widths of the map.
     pub(super) result: &'r SpanResult,
     /// The width at its limiting place, metres.
@@ -56,7 +56,7 @@ pub(super) struct Narrow<'r> {
 }
 
 impl<'r> Narrow<'r> {
-    pub(super) fn of(made: &StrokeCorridor, edge: u32, result: &'r SpanResult) -> Self {
+    pub(super) fn of(made: &StrokeCorridor, edge: EdgeNo, result: &'r SpanResult) -> Self {
         let corridor = &made.corridor;
         let at = result.limiting.station.min(corridor.len() - 1);
         Self { edge, result, width_m: corridor.left_m[at] + corridor.right_m[at] }
@@ -85,7 +85,7 @@ impl Steps {
 
 /// The search for one edge's need, in steps of width.
 struct Search {
-    edge: u32,
+    edge: EdgeNo,
     /// A width that failed, and the RSC with it.
     fails: (i64, f64),
     does: Option<i64>,
@@ -141,14 +141,14 @@ struct Probe {
     steps: i64,
     /// Index of the stroke and vehicle.
     of: usize,
-    edges: Vec<u32>,
+    edges: Vec<EdgeNo>,
 }
 
 impl Probe {
     /// What the searches of a stroke and vehicle ask for next. An edge that fits with [`CLOSE_M`] to spare or less is done, so
     /// edges that ask for nearly the same width share a probe.
     fn of(stroke: u32, of: usize, searches: &[Search]) -> Vec<Self> {
-        let mut wanted: Vec<(i64, u32)> =
+        let mut wanted: Vec<(i64, EdgeNo)> =
             searches.iter().filter_map(|search| Some((search.next?, search.edge))).collect();
         wanted.sort_unstable_by(|a, b| b.cmp(a));
         let mut probes: Vec<Self> = Vec::new();
@@ -166,21 +166,21 @@ impl Probe {
 struct Widened<'w> {
     probe: &'w Probe,
     corridor: &'w Corridor,
-    edges: Vec<u32>,
+    edges: Vec<EdgeNo>,
     spans: Vec<Range<usize>>,
     /// Of all edges of the stroke: its plan serves them, too.
     planned: &'w [Range<usize>],
 }
 
 /// The width of an edge's strip, metres.
-fn strip_m(job: &Job<'_>, edge: u32) -> Option<f64> {
-    let edge = job.network.edges.get(edge as usize)?;
+fn strip_m(job: &Job<'_>, edge: EdgeNo) -> Option<f64> {
+    let edge = job.network.edges.get(edge.index())?;
     Some(f64::from(job.network.section(edge).strip(job.settings.policy)?.width_m()))
 }
 
 /// For each stroke and vehicle: edges with the width in metres with which each is likely to be safe, if its stroke were nowhere narrower.
 /// An edge that is likely to need more than [`MOST_MORE_M`] more is left out.
-pub(super) fn likely_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32, f64)>> {
+pub(super) fn likely_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(EdgeNo, f64)>> {
     let likely = |narrow: &Narrow<'_>| {
         let steps = Steps::of(narrow, strip_m(job, narrow.edge)?)?.likely?;
         Some((narrow.edge, steps as f64 / WIDTHS))
@@ -191,7 +191,7 @@ pub(super) fn likely_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u
 /// For each stroke and vehicle: edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower.
 /// An edge for which no width up to [`MOST_MORE_M`] more would do is left out. All searches take their next step together, so that
 /// the kernel certifies many widened strokes side by side.
-pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32, f64)>> {
+pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(EdgeNo, f64)>> {
     let begin = |lacking: &Lacking<'_>| -> Vec<Search> {
         lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, strip_m(job, narrow.edge)?)).collect()
     };
@@ -225,7 +225,7 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
             })
             .collect();
         let rows = certify_cases(&cases, &job.settings.stet);
-        let mut results: FxHashMap<(usize, u32), &SpanResult> = FxHashMap::default();
+        let mut results: FxHashMap<(usize, EdgeNo), &SpanResult> = FxHashMap::default();
         for (wide, row) in wide.iter().zip(&rows) {
             results.extend(wide.edges.iter().zip(&row.spans).map(|(&edge, result)| ((wide.probe.of, edge), result)));
         }
@@ -250,7 +250,7 @@ impl<'w> Widened<'w> {
 /// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `stroke` is an index
 /// into [`Network::strokes`]. `None` if no width up to 8 m more would do.
 #[must_use]
-pub fn edge_need(network: &Network, stroke: u32, edge: u32, model: &Model, settings: &Settings) -> Option<f64> {
+pub fn edge_need(network: &Network, stroke: u32, edge: EdgeNo, model: &Model, settings: &Settings) -> Option<f64> {
     let stroke = network.strokes.get(stroke as usize)?;
     let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor).ok()?;
     let span = made.spans.iter().find(|span| span.edge == edge && span.unknown.is_none())?;
@@ -271,7 +271,7 @@ fn widened(job: &Job<'_>, laid: &LaidOut<'_>, width_m: f64) -> Option<(StrokeCor
 }
 
 /// The lines of strokes, by edge.
-pub type LineOf<'l> = dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason> + 'l;
+pub type LineOf<'l> = dyn Fn(EdgeNo) -> Result<&'l StrokeLine, UnknownReason> + 'l;
 
 /// The inputs of a search for what a turn needs.
 #[derive(Clone, Copy)]
@@ -312,7 +312,7 @@ impl TurnCase<'_> {
         let strip = params.strip.max(self.settings.policy);
         let ends = [self.turn.movement.from, self.turn.movement.to];
         let has_m = ends.iter().map(|&edge| {
-            let edge = network.edges.get(edge as usize)?;
+            let edge = network.edges.get(edge.index())?;
             Some(f64::from(network.section(edge).strip(strip)?.width_m()))
         });
         let has_m = has_m.collect::<Option<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
@@ -321,7 +321,7 @@ impl TurnCase<'_> {
         let safe = |&width_m: &f64| {
             let wide = |stroke: u32| self.widened(stroke, strip, width_m).ok().map(Arc::new);
             let (Some(a), Some(b)) = (wide(from), wide(to)) else { return false };
-            let lines = |edge: u32| match line(edge)?.stroke {
+            let lines = |edge: EdgeNo| match line(edge)?.stroke {
                 stroke if stroke == a.stroke => Ok(a.as_ref()),
                 stroke if stroke == b.stroke => Ok(b.as_ref()),
                 _ => line(edge),

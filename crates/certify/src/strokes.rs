@@ -12,7 +12,7 @@ use super::job::Job;
 use super::needs::{Lacking, Narrow, edge_needs, likely_needs};
 use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
-use crate::network::{Edge, Network, Stroke};
+use crate::network::{Edge, EdgeNo, Network, Stroke};
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan, StrokeMade};
 use crate::settings::Needs;
@@ -74,8 +74,8 @@ impl Outcome {
     }
 
     /// Notes an edge, and why it has no corridor.
-    pub fn edge(&mut self, edge: u32, measure: EdgeMeasure, why: Option<UnknownReason>) {
-        if let Some(slot) = self.measures.get_mut(edge as usize) {
+    pub fn edge(&mut self, edge: EdgeNo, measure: EdgeMeasure, why: Option<UnknownReason>) {
+        if let Some(slot) = self.measures.get_mut(edge.index()) {
             *slot = measure;
         }
         *self.corridors.entry(why.map(reason_name)).or_default() += 1;
@@ -129,7 +129,7 @@ pub fn certify_network<E: Send>(
 pub fn by_cell(network: &Network) -> Vec<u32> {
     let cell = |stroke: &Stroke| {
         let first = network.stroke_edges.get(stroke.edges.start as usize)?;
-        Some(network.cell(network.edges.get(*first as usize)?))
+        Some(network.cell(network.edges.get(first.index())?))
     };
     let mut order: Vec<_> = (0_u32..).zip(&network.strokes).map(|(index, stroke)| (cell(stroke), index)).collect();
     order.sort_unstable();
@@ -194,7 +194,7 @@ type Numbered<'n> = (u32, &'n Stroke);
 /// that takes too long are certified one by one, so that only those that do so by themselves have no certificate.
 fn in_time(job: &Job<'_>, strokes: &[Numbered<'_>], number: u64, of: u64) -> (Vec<StrokeMade>, bool) {
     let edge = strokes.first().and_then(|(_, stroke)| job.network.stroke_edges.get(stroke.edges.start as usize));
-    let edge = edge.map(|&edge| job.network.edges[edge as usize].id);
+    let edge = edge.map(|&edge| job.network.edges[edge.index()].id);
     let what = if strokes.len() == 1 { "stroke" } else { "strokes from" };
     match watch::guarded(Work { what, number, of, edge }, watch::patience(), || certify_together(job, strokes)) {
         Ok(made) => (made, false),
@@ -248,7 +248,7 @@ fn with_corridor(job: &Job<'_>, stroke: u32, made: &StrokeCorridor, rows: &[Plan
         .enumerate()
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
-            let edge = job.network.edges.get(span.edge as usize)?;
+            let edge = job.network.edges.get(span.edge.index())?;
             let verdict = verdict(job.network, edge, &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
             let conclusion = Conclusion { verdict, measured };
@@ -263,7 +263,7 @@ fn with_corridor(job: &Job<'_>, stroke: u32, made: &StrokeCorridor, rows: &[Plan
         };
         (span.edge, measure, span.unknown)
     });
-    let first = made.spans.first().map_or(0, |span| span.edge);
+    let first = made.spans.first().map_or(0, |span| span.edge.get());
     let plan = |(vehicle, row): (u32, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
     let plans = (0..).zip(rows).filter_map(plan).collect();
     StrokeMade { stroke, edges: edges.collect(), certificates, plans }
@@ -314,7 +314,7 @@ fn without_corridor(job: &Job<'_>, (number, stroke): Numbered<'_>, reason: Unkno
     let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
     let of_vehicle = |(vehicle, model)| {
         edges.iter().map(move |&edge| {
-            let verdict = verdict(network, &network.edges[edge as usize], model, Some(reason), None);
+            let verdict = verdict(network, &network.edges[edge.index()], model, Some(reason), None);
             (vehicle, EdgeCertificate::bare(edge, verdict))
         })
     };

@@ -4,7 +4,7 @@
 
 use super::paths::best_of;
 use crate::corridor::LaidOut;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::settings::Settings;
 use crate::stet::{Model, SpanResult, certify_planned};
 use crate::stop::{Stop, Stopped};
@@ -22,7 +22,7 @@ pub fn stroke_at_least(
     model: &Model,
     settings: &Settings,
     stop: &Stop,
-) -> Result<Vec<(u32, SpanResult)>, Stopped> {
+) -> Result<Vec<(EdgeNo, SpanResult)>, Stopped> {
     stop.check()?;
     let Settings { policy, corridor, stet, .. } = settings;
     let Some(stroke) = network.strokes.get(stroke as usize) else { return Ok(Vec::new()) };

@@ -7,7 +7,7 @@
 use rstar::{AABB, RTree};
 use rustc_hash::FxHashSet;
 
-use crate::network::{EARTH_RADIUS_M, Network};
+use crate::network::{EARTH_RADIUS_M, EdgeNo, Network};
 use crate::osm::LonLat;
 use netcert_roads::turns::TurnFacts;
 
@@ -35,7 +35,7 @@ impl Touched {
         let of_chain = |stroke: &crate::network::Stroke| {
             let chains = [&stroke.approach, &stroke.edges].map(|range| range.start as usize..range.end as usize);
             let chain = chains.into_iter().flat_map(|range| network.stroke_edges.get(range).unwrap_or_default());
-            chain.into_iter().any(|&edge| changed.get(edge as usize).copied().unwrap_or(true))
+            chain.into_iter().any(|&edge| changed.get(edge.index()).copied().unwrap_or(true))
         };
         let strokes: Vec<u32> =
             (0..).zip(&network.strokes).filter(|(_, stroke)| of_chain(stroke)).map(|(index, _)| index).collect();
@@ -51,7 +51,7 @@ impl Touched {
     }
 
     /// The edges of the touched strokes.
-    pub fn edges<'n>(&self, network: &'n Network) -> impl Iterator<Item = u32> + use<'_, 'n> {
+    pub fn edges<'n>(&self, network: &'n Network) -> impl Iterator<Item = EdgeNo> + use<'_, 'n> {
         let strokes = self.strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize));
         strokes
             .flat_map(|stroke| network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize))
@@ -115,7 +115,7 @@ impl TouchedTurns {
 
     fn has(&self, turn: &TurnFacts) -> bool {
         let mut edges = [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied());
-        let stroke = |edge: u32| self.of_edge.get(edge as usize);
+        let stroke = |edge: EdgeNo| self.of_edge.get(edge.index());
         edges.any(|edge| stroke(edge).is_none_or(|stroke| self.strokes.contains(stroke))) || self.nodes.has(&turn.line)
     }
 }

@@ -13,7 +13,7 @@ use super::narrower::{self, MeasuredWidths, Narrower};
 use super::needs::TurnCase;
 use super::paths::{Best, LaidTurn, best_planned};
 use crate::account::AccountRow;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnMade, TurnNeed};
@@ -195,7 +195,7 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
         .map(|&turn| &job.turns[turn as usize])
         .filter(|turn| (0..job.models.len()).any(|vehicle| given(job, turn, vehicle).is_none()))
         .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied()))
-        .map(|edge| strokes[edge as usize])
+        .map(|edge| strokes[edge.index()])
         .collect::<FxHashSet<u32>>()
         .into_iter()
         .collect();
@@ -230,7 +230,7 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
         return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
     }
     let verdicts = job.edges.get(vehicle)?;
-    let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
+    let of = |edge: EdgeNo| verdicts.get(edge.index()).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
     let arcs =
@@ -245,18 +245,18 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
 const TIME: Verdict = Verdict::Unknown(UnknownReason::Time);
 
 /// The verdict of an edge that a passage leads over. Room does not matter there, so a rule counts behind it.
-fn of_arc(job: &TurnJob<'_>, verdict: Verdict, arc: u32, vehicle: usize) -> Verdict {
+fn of_arc(job: &TurnJob<'_>, verdict: Verdict, arc: EdgeNo, vehicle: usize) -> Verdict {
     if verdict.bars_passage() {
         return verdict;
     }
-    let legal = job.network.edges.get(arc as usize).map(|edge| job.network.legal(edge));
+    let legal = job.network.edges.get(arc.index()).map(|edge| job.network.legal(edge));
     let vehicle = job.models.get(vehicle).map(|model| &model.vehicle);
     legal.zip(vehicle).and_then(|(legal, vehicle)| legal.forbids(vehicle)).unwrap_or(verdict)
 }
 
 /// Whether one of a turn's edges is closed to the vehicle at some times. The turn is then no better than `unknown: time`.
 fn only_at_times(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> bool {
-    let of = |edge: u32| job.edges.get(vehicle).and_then(|verdicts| verdicts.get(edge as usize)).copied();
+    let of = |edge: EdgeNo| job.edges.get(vehicle).and_then(|verdicts| verdicts.get(edge.index())).copied();
     let ends = [turn.movement.from, turn.movement.to].into_iter().any(|edge| of(edge) == Some(TIME));
     ends || turn.through.iter().any(|&arc| of(arc).is_some_and(|verdict| of_arc(job, verdict, arc, vehicle) == TIME))
 }
@@ -321,18 +321,18 @@ fn plan_as_on(
 ) -> Vec<(usize, TurnCertificate)> {
     let turn = &job.turns[made.turn as usize];
     let (policy, params) = (job.settings.policy, &job.settings.turn_params());
-    let here = |edge: u32| line_of(lines, strokes, edge);
+    let here = |edge: EdgeNo| line_of(lines, strokes, edge);
     let met: FxHashSet<u32> = turn
         .through
         .iter()
         .chain([&turn.movement.from, &turn.movement.to])
-        .map(|&edge| strokes[edge as usize])
+        .map(|&edge| strokes[edge.index()])
         .collect();
     let laid: FxHashMap<u32, Result<StrokeLine, UnknownReason>> = met
         .into_iter()
         .map(|stroke| (stroke, StrokeLine::new(narrower.network, stroke, policy, &job.settings.corridor)))
         .collect();
-    let there = |edge: u32| match laid.get(&strokes[edge as usize]) {
+    let there = |edge: EdgeNo| match laid.get(&strokes[edge.index()]) {
         Some(Ok(line)) => Ok(line),
         Some(Err(reason)) => Err(*reason),
         None => Err(UnknownReason::Geometry),
@@ -367,8 +367,8 @@ fn plan_as_on(
     better
 }
 
-fn line_of<'l>(lines: &'l Lines, strokes: &[u32], edge: u32) -> Result<&'l StrokeLine, UnknownReason> {
-    match lines.get(&strokes[edge as usize]) {
+fn line_of<'l>(lines: &'l Lines, strokes: &[u32], edge: EdgeNo) -> Result<&'l StrokeLine, UnknownReason> {
+    match lines.get(&strokes[edge.index()]) {
         Some((_, Ok(line))) => Ok(line.as_ref()),
         Some((_, Err(reason))) => Err(*reason),
         None => Err(UnknownReason::Geometry),
@@ -377,7 +377,7 @@ fn line_of<'l>(lines: &'l Lines, strokes: &[u32], edge: u32) -> Result<&'l Strok
 
 /// The certificates of a turn, which are unknown if they take too long.
 fn in_time(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
-    let edge = job.turns.get(index as usize).map(|turn| job.network.edges[turn.movement.from as usize].id);
+    let edge = job.turns.get(index as usize).map(|turn| job.network.edges[turn.movement.from.index()].id);
     let work = Work { what: "turn", number: u64::from(index) + 1, of: job.turns.len() as u64, edge };
     let certify = || certify_turn(job, index, strokes, lines);
     watch::guarded(work, watch::patience(), certify).unwrap_or_else(|TookTooLong| {
@@ -397,7 +397,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
         .collect();
-    let line = |edge: u32| line_of(lines, strokes, edge);
+    let line = |edge: EdgeNo| line_of(lines, strokes, edge);
     let mut laid_out = false;
     for reach in [LengthClass::Short, LengthClass::Long] {
         let live: Vec<usize> = (0..job.models.len())

@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::matching::{Match, match_rows};
 use super::row::{Quantity, Row};
 use super::surface::Counted;
-use crate::network::{Edge, Network, Pieces, Site, pieces};
+use crate::network::{Edge, EdgeNo, Network, Pieces, Site, pieces};
 use crate::osm::facts::{Limit, Policy, WidthSource};
 
 /// Whether a place was found for a measurement.
@@ -111,7 +111,7 @@ impl Entry {
     }
 
     fn set(&mut self, found: Match, network: &Network) {
-        let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
+        let id = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0, |edge| edge.id);
         let (state, targets, why) = match found {
             Match::Edges(edges) => {
                 (State::Matched, edges.into_iter().map(|edge| Target::Edge(id(edge))).collect(), None)
@@ -361,7 +361,7 @@ fn policy(quantity: Quantity) -> Option<Policy> {
 /// The edges of a network that measurements name.
 pub struct Edges<'n> {
     network: &'n Network,
-    indices: FxHashMap<i64, u32>,
+    indices: FxHashMap<i64, EdgeNo>,
 }
 
 impl<'n> Edges<'n> {
@@ -378,14 +378,14 @@ impl<'n> Edges<'n> {
         let indices = if named.is_empty() {
             FxHashMap::default()
         } else {
-            let known = (0_u32..).zip(&network.edges).filter(|(_, edge)| named.contains(&edge.id));
+            let known = network.numbered_edges().filter(|(_, edge)| named.contains(&edge.id));
             known.map(|(index, edge)| (edge.id, index)).collect()
         };
         Self { network, indices }
     }
 
     fn of_id(&self, id: i64) -> Option<&'n Edge> {
-        self.network.edges.get(*self.indices.get(&id)? as usize)
+        self.network.edges.get(self.indices.get(&id)?.index())
     }
 
     /// `None` if the network does not have the place.

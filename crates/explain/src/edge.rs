@@ -9,7 +9,7 @@ use super::tightest::{HingePlace, LimitingPlace};
 use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
-use crate::network::{Edge, Network, Road, Stroke, destination_tag};
+use crate::network::{Edge, EdgeNo, Network, Road, Stroke, destination_tag};
 use crate::osm::facts::{Oneway, Policy, RuleSet, WidthSource};
 use crate::rows::{CertificateRow, EdgeKey, RoadName};
 use crate::settings::Settings;
@@ -25,13 +25,13 @@ use netcert_base::words::verdict_words;
 /// `stop` was told. It is checked before each certificate, and every few metres of the edge's own certificate.
 pub fn explain_edge(
     network: &Network,
-    edge: u32,
+    edge: EdgeNo,
     model: &Model,
     settings: &Settings,
     stop: &Stop,
 ) -> Result<Option<Explanation>, Stopped> {
     stop.check()?;
-    let Some((key, facts)) = EdgeKey::of(network, edge).zip(network.edges.get(edge as usize)) else { return Ok(None) };
+    let Some((key, facts)) = EdgeKey::of(network, edge).zip(network.edges.get(edge.index())) else { return Ok(None) };
     let conflict = Conflict::of(network, facts, &model.vehicle);
     let road = road_facts(network, key, facts, settings.policy, &model.vehicle);
     let case = Case::of(network, edge, settings);
@@ -96,7 +96,7 @@ struct Case {
 }
 
 impl Case {
-    fn of(network: &Network, edge: u32, settings: &Settings) -> Result<Self, UnknownReason> {
+    fn of(network: &Network, edge: EdgeNo, settings: &Settings) -> Result<Self, UnknownReason> {
         let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
         let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor)?;
         let which = made.spans.iter().position(|span| span.edge == edge).ok_or(UnknownReason::Geometry)?;
@@ -129,13 +129,13 @@ impl Case {
 /// The verdict of an edge, as `explain_edge` finds it.
 pub(super) fn edge_verdict(
     network: &Network,
-    edge: u32,
+    edge: EdgeNo,
     model: &Model,
     settings: &Settings,
     stop: &Stop,
 ) -> Result<Option<Verdict>, Stopped> {
     stop.check()?;
-    let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
+    let Some(facts) = network.edges.get(edge.index()) else { return Ok(None) };
     let (result, unknown) = match Case::of(network, edge, settings) {
         Ok(case) => (case.result(&case.made.corridor, model, &settings.stet, stop), case.unknown()),
         Err(reason) => (None, Some(reason)),
@@ -174,7 +174,7 @@ fn seen_from(
     Some(Geometry { frame, corridor, span, result, certificate, ride, place, hinge, tapers })
 }
 
-fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
+fn stroke_of(network: &Network, edge: EdgeNo) -> Option<&Stroke> {
     network.strokes.iter().find(|stroke| {
         let edges = network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize);
         edges.is_some_and(|edges| edges.contains(&edge))
@@ -185,7 +185,7 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
 /// out.
 fn other_strips(
     network: &Network,
-    edge: u32,
+    edge: EdgeNo,
     model: &Model,
     rsc_m: Option<f64>,
     settings: &Settings,

@@ -6,7 +6,7 @@ use super::legal::Conflict;
 use super::{Explanation, Geometry, TurnRoads, no_bound};
 use crate::certify::{MOST_KERB_M, best_of, turn_verdict};
 use crate::corridor::Corridor;
-use crate::network::{Edge, Network, PassageKind};
+use crate::network::{Edge, EdgeNo, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
@@ -52,14 +52,14 @@ pub fn explain_turn(
 ) -> Result<TurnExplanation, Stopped> {
     stop.check()?;
     let roads = [facts.movement.from, facts.movement.to]
-        .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| network.title(edge)));
+        .map(|edge| network.edges.get(edge.index()).map_or(String::new(), |edge| network.title(edge)));
     let made = match LengthClass::of(&model.vehicle) {
         Some(reach) => corridors_of(network, facts, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
     };
     stop.check()?;
     let best = made.as_ref().ok().and_then(|made| best_of(made, &[model], &settings.stet).pop().flatten());
-    let of = |edge: &u32| network.edges.get(*edge as usize);
+    let of = |edge: &EdgeNo| network.edges.get(edge.index());
     let ends = [facts.movement.from, facts.movement.to];
     let ends = ends.iter().filter_map(of).filter_map(|edge| forbids(network, edge, model));
     // Of the edges between, rules count and room does not.
@@ -189,7 +189,7 @@ fn roads_that_decide(
     }
     let mut conflict = None;
     for index in edges {
-        let Some(edge) = network.edges.get(index as usize) else { continue };
+        let Some(edge) = network.edges.get(index.index()) else { continue };
         let ends = [facts.movement.from, facts.movement.to].contains(&index);
         let rule = network.legal(edge).forbids(&model.vehicle).filter(|_| !ends);
         let Some(verdict) =

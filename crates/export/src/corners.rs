@@ -3,16 +3,17 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{ExportError, Source};
+use crate::rows::EdgeNo;
 
 impl Source<'_> {
     /// The permitted edges from which the only way on is a refused turn: nothing else meets where they end.
     ///
     /// # Errors
     /// The database cannot be read.
-    pub(super) fn stopped(&self) -> Result<FxHashSet<u32>, ExportError> {
+    pub(super) fn stopped(&self) -> Result<FxHashSet<EdgeNo>, ExportError> {
         let (vehicle, policy) = (&self.ask.vehicle, self.ask.policy);
         let mut database = self.database()?;
-        let mut refused: Vec<(u32, i64)> = Vec::new();
+        let mut refused: Vec<(EdgeNo, i64)> = Vec::new();
         for step in self.told(database.turn_steps(vehicle, policy)?) {
             let step = step?;
             refused.extend(self.refuses_turn(&step).then_some((step.from, step.via_node)));

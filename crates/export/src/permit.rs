@@ -106,16 +106,15 @@ impl Bits {
     }
 
     /// Sets a bit. An index beyond the end is ignored.
-    pub fn set(&mut self, index: u32) {
-        if let Some(word) = self.words.get_mut(index as usize / 64).filter(|_| (index as usize) < self.len) {
+    pub fn set(&mut self, index: usize) {
+        if let Some(word) = self.words.get_mut(index / 64).filter(|_| index < self.len) {
             *word |= 1 << (index % 64);
         }
     }
 
     /// Whether a bit is set. False beyond the end.
     #[must_use]
-    pub fn get(&self, index: u32) -> bool {
-        let index = index as usize;
+    pub fn get(&self, index: usize) -> bool {
         index < self.len && self.words.get(index / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }
 
@@ -200,6 +199,6 @@ mod tests {
         let mut bits = Bits::default();
         (0..200).for_each(|i| bits.push(i % 3 == 0));
         assert!((0..200).all(|i| bits.get(i) == (i % 3 == 0)));
-        assert!(!bits.get(200) && !bits.get(u32::MAX) && bits.len() == 200);
+        assert!(!bits.get(200) && !bits.get(usize::MAX) && bits.len() == 200);
     }
 }

@@ -100,7 +100,7 @@ impl<'r> Source<'r> {
         let with_permit = |row: TurnRow| {
             let permit = Permit::of(&row.certificate);
             // The bit says whether the turn is permitted with its edges. If not, the rule finds the reason: the turn's or an edge's.
-            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn.index));
+            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn.index as usize));
             ExportTurn { row, refusal }
         };
         self.reporter.begin("turns", self.permitted.turns.len() as u64);
@@ -170,8 +170,8 @@ fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Res
     }
     for step in told(reporter, database.turn_steps(&ask.vehicle, ask.policy)?) {
         let step = step?;
-        let arcs = |arcs| rings.through(arcs).is_some_and(|arcs| arcs.iter().all(|&arc| known.get(arc)));
-        let both = out.edges.get(step.from) && out.edges.get(step.to) && step.arcs.is_none_or(arcs);
+        let arcs = |arcs| rings.through(arcs).is_some_and(|arcs| arcs.iter().all(|&arc| known.get(arc.index())));
+        let both = out.edges.get(step.from.index()) && out.edges.get(step.to.index()) && step.arcs.is_none_or(arcs);
         let refusal = ask.rule.turn(Permit { verdict: step.verdict, rsc_m: step.rsc_m }, both);
         out.turns.push(refusal.is_none());
         out.turn_tally.count(refusal);

@@ -9,6 +9,7 @@ use std::iter::Peekable;
 use super::ExportError;
 use crate::osm::facts::Direction;
 use crate::osm::pbf::copy::Blobs;
+use crate::rows::EdgeNo;
 use crate::rows::EdgeStep;
 use crate::store::{StoreError, Streamed};
 
@@ -47,8 +48,8 @@ pub(super) struct WayStretch {
     pub(super) first: usize,
     /// Index of the last node in the way's references.
     pub(super) last: usize,
-    /// Indices of the edges along the way and against it.
-    pub(super) edges: [Option<u32>; 2],
+    /// The edges along the way and against it.
+    pub(super) edges: [Option<EdgeNo>; 2],
     /// RSC of the two edges, metres.
     pub(super) rsc_m: [Option<f64>; 2],
 }
@@ -61,7 +62,7 @@ pub(super) enum OnWay {
     /// The stretches in way order. They overlap only at their ends.
     Stretches(Vec<WayStretch>),
     /// The way has these edges, but their places are not clear.
-    Unclear(Vec<u32>),
+    Unclear(Vec<EdgeNo>),
 }
 
 /// A stream of edges that follows a stream of ways.
@@ -207,7 +208,7 @@ mod tests {
         [from_node, to_node]: [i64; 2],
         direction: Direction,
     ) -> EdgeStep {
-        let edge = EdgeKey { index: edge, id: i64::from(edge), way_id: 1, from_node, to_node, direction };
+        let edge = EdgeKey { index: EdgeNo::new(edge), id: i64::from(edge), way_id: 1, from_node, to_node, direction };
         let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
         EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }
     }
@@ -227,7 +228,9 @@ mod tests {
         assert_eq!(stretches(&rows, &[1, 2, 3, 4]), [(0, 2), (2, 3)]);
         assert_eq!(stretches(&rows, &[1, 2, 2, 3, 4]), [(0, 3), (3, 4)]);
         let OnWay::Stretches(found) = on_way(&rows, &[1, 2, 3, 4]) else { panic!() };
-        assert_eq!([found[0].edges, found[1].edges], [[Some(0), Some(1)], [Some(2), None]]);
+        let number = |edge: Option<EdgeNo>| edge.map(EdgeNo::get);
+        let edges = [found[0].edges, found[1].edges].map(|edges| edges.map(number));
+        assert_eq!(edges, [[Some(0), Some(1)], [Some(2), None]]);
     }
 
     #[test]
@@ -239,7 +242,7 @@ mod tests {
         );
         // The way runs twice along a loop behind a missing node, so the edge's place is not clear.
         let again = [row(0, 0, 2, [1, 2], Forward)];
-        assert_eq!(on_way(&again, &[9, 1, 2, 1, 2]), OnWay::Unclear(vec![0]));
+        assert_eq!(on_way(&again, &[9, 1, 2, 1, 2]), OnWay::Unclear(vec![EdgeNo::new(0)]));
     }
 
     #[test]
@@ -250,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_node_made_one_with_another_makes_a_way_unclear_and_no_edges_mean_no_road() {
-        assert_eq!(on_way(&[row(7, 0, 2, [1, 3], Forward)], &[1, 2, 3]), OnWay::Unclear(vec![7]));
+        assert_eq!(on_way(&[row(7, 0, 2, [1, 3], Forward)], &[1, 2, 3]), OnWay::Unclear(vec![EdgeNo::new(7)]));
         assert_eq!(on_way(&[], &[1, 2, 3]), OnWay::Nothing);
     }
 }

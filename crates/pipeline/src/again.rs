@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::error::RunError;
 use crate::certify::{Job, Touched, TurnJob, certify_some_turns, certify_strokes};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
@@ -28,8 +28,8 @@ pub struct VerdictChanges {
 
 impl VerdictChanges {
     /// Writes a new verdict over the one before.
-    fn replace(&mut self, verdicts: &mut [Verdict], index: u32, now: Verdict) {
-        let slot = verdicts.get_mut(index as usize);
+    fn replace(&mut self, verdicts: &mut [Verdict], index: usize, now: Verdict) {
+        let slot = verdicts.get_mut(index);
         let before = slot.map(|slot| std::mem::replace(slot, now) == Verdict::Safe).unwrap_or_default();
         self.again += 1;
         self.became_safe += usize::from(now == Verdict::Safe && !before);
@@ -85,12 +85,12 @@ pub(super) struct Again<'a> {
 
 impl Again<'_> {
     /// The edges of touched strokes with the measures of their corridors, in order.
-    pub(super) fn measures(&self, settings: &Settings, reporter: &dyn Reporter) -> Vec<(u32, EdgeMeasure)> {
+    pub(super) fn measures(&self, settings: &Settings, reporter: &dyn Reporter) -> Vec<(EdgeNo, EdgeMeasure)> {
         let Self { network, touched, .. } = *self;
         let job = Job { network, models: &[], settings };
         let Ok(outcome) = certify_strokes::<Infallible>(&job, &touched.strokes, reporter, |_, _| Ok(()));
-        let measure = |edge: u32| outcome.measures.get(edge as usize).copied().unwrap_or_default();
-        let mut all: Vec<(u32, EdgeMeasure)> = touched.edges(network).map(|edge| (edge, measure(edge))).collect();
+        let measure = |edge: EdgeNo| outcome.measures.get(edge.index()).copied().unwrap_or_default();
+        let mut all: Vec<(EdgeNo, EdgeMeasure)> = touched.edges(network).map(|edge| (edge, measure(edge))).collect();
         all.sort_unstable_by_key(|edge| edge.0);
         all
     }
@@ -126,7 +126,7 @@ impl Again<'_> {
         let mut verdicts: Vec<Vec<Verdict>> = sets.iter_mut().map(|set| std::mem::take(&mut set.edges)).collect();
         let mut edge_changes = vec![VerdictChanges::default(); models.len()];
         for ((made, known), changes) in edges.iter().zip(&mut verdicts).zip(&mut edge_changes) {
-            made.iter().for_each(|made| changes.replace(known, made.edge, made.conclusion.verdict));
+            made.iter().for_each(|made| changes.replace(known, made.edge.index(), made.conclusion.verdict));
         }
         let mut turns: Vec<Vec<TurnCertificate>> = vec![Vec::new(); models.len()];
         if sets.first().is_some_and(|set| set.turns.is_some()) {
@@ -142,7 +142,7 @@ impl Again<'_> {
             set.edges = verdicts;
             let mut turn_changes = VerdictChanges::default();
             if let Some(known) = &mut set.turns {
-                turns.iter().for_each(|made| turn_changes.replace(known, made.turn, made.conclusion.verdict));
+                turns.iter().for_each(|made| turn_changes.replace(known, made.turn as usize, made.conclusion.verdict));
             }
             let (vehicle, policy) = (set.model.vehicle.id.clone(), settings.policy);
             again.push(MadeAgain {

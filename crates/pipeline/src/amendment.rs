@@ -7,7 +7,7 @@ use super::reuse::{Certificates, Stored, is_undone, same_turn, without_corridor}
 use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::{NearNodes, Outcome, Touched, TurnOutcome};
-use crate::network::{Differences, Network, Portion};
+use crate::network::{Differences, EdgeNo, Network, Portion};
 use crate::reporter::Reporter;
 use crate::rows::EdgeMeasure;
 use crate::settings::Settings;
@@ -65,7 +65,7 @@ pub(super) fn amendment<'a>(
         (nodes, areas)
     });
     let mut all: Vec<EdgeMeasure> = known.iter().map(|(_, measure)| *measure).collect();
-    measures.iter().for_each(|&(edge, measure)| all[edge as usize] = measure);
+    measures.iter().for_each(|&(edge, measure)| all[edge.index()] = measure);
     let account = account(after, turns.len(), &all, sets);
     let certificates = made.iter().map(|made| made.set.edges.len() + made.set.turns.len()).sum::<usize>();
     summary.stage("certificates", clock, certificates as u64, "certificates");
@@ -94,8 +94,8 @@ fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMe
 /// The account of all certificates, those that stand and those that were made again. `measures`: by edge.
 fn account(roads: &Portion, turns: usize, measures: &[EdgeMeasure], sets: &[StoredSet]) -> Vec<AccountRow> {
     let mut outcome = Outcome::new(&roads.network);
-    for (edge, &measure) in (0_u32..).zip(measures) {
-        let verdicts = || sets.iter().filter_map(move |set| set.edges.get(edge as usize).copied());
+    for (edge, &measure) in EdgeNo::all().zip(measures) {
+        let verdicts = || sets.iter().filter_map(move |set| set.edges.get(edge.index()).copied());
         outcome.edge(edge, measure, without_corridor(measure, verdicts()));
         verdicts().for_each(|verdict| outcome.count(verdict));
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::account::AccountRow;
 use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
-use crate::network::{Network, Portion};
+use crate::network::{EdgeNo, Network, Portion};
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
@@ -65,7 +65,8 @@ impl Certifier<'_> {
             let work = PortionWork { number, portion, share: Share::new(self.reporter, done, own) };
             self.strokes_of(&work, writer, checkpoint, &mut outcome, &mut verdicts)?;
             for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
-                let plan = StoredPlan { at: portion.edge(plan.at), ..plan };
+                let first = portion.edge(EdgeNo::new(plan.at));
+                let plan = StoredPlan { at: first.get(), ..plan };
                 writer.plan(self.numbers[vehicle], self.settings.policy, &plan)?;
             }
             writer.portion(portion, &outcome.measures)?;

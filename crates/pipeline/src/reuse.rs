@@ -8,7 +8,7 @@ use std::time::Instant;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::certify::{NearNodes, Touched};
-use crate::network::{Differences, Network, Portion};
+use crate::network::{Differences, EdgeNo, Network, Portion};
 use crate::osm::LonLat;
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
@@ -205,8 +205,8 @@ impl Earlier {
         (0_u32..).take(network.strokes.len()).filter(move |stroke| !touched.contains(stroke) && made(stroke))
     }
 
-    fn older(&self, edge: u32) -> Option<u32> {
-        self.differences.older.get(edge as usize).copied().flatten()
+    fn older(&self, edge: EdgeNo) -> Option<EdgeNo> {
+        self.differences.older.get(edge.index()).copied().flatten()
     }
 
     /// The edges of a stroke that stands: measures, and one certificate for each vehicle.
@@ -214,9 +214,9 @@ impl Earlier {
         &'a self,
         network: &'a Network,
         stroke: u32,
-    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a store::StoredCertificate>)> {
+    ) -> impl Iterator<Item = (EdgeNo, EdgeMeasure, Vec<&'a store::StoredCertificate>)> {
         edges_of(network, stroke).iter().filter_map(|&edge| {
-            let older = self.older(edge)? as usize;
+            let older = self.older(edge)?.index();
             let kept = self.sets.iter().map(|set| set.edges.get(older)).collect::<Option<Vec<_>>>()?;
             Some((edge, *self.measures.get(older)?, kept))
         })
@@ -226,7 +226,7 @@ impl Earlier {
     pub(super) fn plans(&self, network: &Network, stroke: u32) -> Vec<(usize, StoredPlan)> {
         let Some(&first) = edges_of(network, stroke).first() else { return Vec::new() };
         let Some(older) = self.older(first) else { return Vec::new() };
-        let plan = |(vehicle, set): (usize, &Set)| Some((vehicle, set.plans.at(older, first)?));
+        let plan = |(vehicle, set): (usize, &Set)| Some((vehicle, set.plans.at(older.get(), first.get())?));
         self.sets.iter().enumerate().filter_map(plan).collect()
     }
 
@@ -281,7 +281,7 @@ impl Earlier {
 /// Whether two turns of one id are the same movement with the same kerb and the same restriction.
 pub(super) fn same_turn(differences: &Differences, old: &TurnFacts, new: &TurnFacts) -> bool {
     let TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line } = new;
-    let same = |edge: u32, older: u32| differences.older.get(edge as usize).copied().flatten() == Some(older);
+    let same = |edge: EdgeNo, older: EdgeNo| differences.older.get(edge.index()).copied().flatten() == Some(older);
     *id == old.id
         && same(movement.from, old.movement.from)
         && same(movement.to, old.movement.to)
@@ -300,7 +300,7 @@ fn built(extract: &Path, changes: &Changes, countries: &Countries) -> Result<Por
     Ok(roads.into_whole())
 }
 
-fn edges_of(network: &Network, stroke: u32) -> &[u32] {
+fn edges_of(network: &Network, stroke: u32) -> &[EdgeNo] {
     let range =
         network.strokes.get(stroke as usize).map(|stroke| stroke.edges.start as usize..stroke.edges.end as usize);
     range.and_then(|range| network.stroke_edges.get(range)).unwrap_or_default()

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::error::RunError;
+use crate::network::EdgeNo;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, TurnMade};
 use crate::store::{Checkpoint, PartOfWork, Stage};
 use crate::verdict::{UnknownReason, Verdict};
@@ -80,7 +81,7 @@ pub(super) fn unknown_rest(
 const FAILED: Verdict = Verdict::Unknown(UnknownReason::Failed);
 
 /// The edges of a stroke of a task that failed.
-pub(super) fn failed_stroke(stroke: u32, edges: &[u32], vehicles: usize) -> StrokeMade {
+pub(super) fn failed_stroke(stroke: u32, edges: &[EdgeNo], vehicles: usize) -> StrokeMade {
     let certificates = |vehicle: u32| edges.iter().map(move |&edge| (vehicle, EdgeCertificate::bare(edge, FAILED)));
     StrokeMade {
         stroke,

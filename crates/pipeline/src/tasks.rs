@@ -16,7 +16,7 @@ use super::roads::{Portions, read_roads};
 use super::source::MapSource;
 use super::summary::Summary;
 use crate::certify::{Job as StrokeJob, TurnJob, by_cell, make_strokes, make_turns};
-use crate::network::{Cell, Portion};
+use crate::network::{Cell, EdgeNo, Portion};
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
 use crate::reporter::{Reporter, Silent};
@@ -136,8 +136,8 @@ pub enum TaskError {
     NoVerdict {
         /// The task.
         task: u32,
-        /// Index of the edge in the whole network.
-        edge: u32,
+        /// Number of the edge in the whole network.
+        edge: EdgeNo,
     },
     /// The caller cancelled the work.
     #[error(transparent)]
@@ -177,8 +177,8 @@ pub struct StrokesDone {
     pub verdicts: Vec<u8>,
 }
 
-/// Verdicts of edges, each with its index in the whole network.
-type Verdicts = Vec<(u32, Vec<Verdict>)>;
+/// Verdicts of edges, each with its number in the whole network.
+type Verdicts = Vec<(EdgeNo, Vec<Verdict>)>;
 
 impl Job {
     /// A job as text. The same job gives the same text.
@@ -225,7 +225,7 @@ impl Job {
             done.push(made);
             Ok(())
         })?;
-        let mut verdicts: FxHashMap<u32, Vec<Verdict>> = FxHashMap::default();
+        let mut verdicts: FxHashMap<EdgeNo, Vec<Verdict>> = FxHashMap::default();
         let none = vec![Verdict::Unknown(UnknownReason::Failed); self.models.len()];
         for (vehicle, certificate) in done.iter().flat_map(|made| &made.certificates) {
             let of_edge = verdicts.entry(portion.edge(certificate.edge)).or_insert_with(|| none.clone());
@@ -252,7 +252,7 @@ impl Job {
     ) -> Result<Vec<u8>, TaskError> {
         let (number, portion) = unpacked(task)?;
         let network = &portion.network;
-        let mut known: FxHashMap<u32, Vec<Verdict>> = FxHashMap::default();
+        let mut known: FxHashMap<EdgeNo, Vec<Verdict>> = FxHashMap::default();
         for bytes in verdicts {
             let some: Verdicts = postcard::from_bytes(bytes).map_err(|e| damaged("verdicts", &e))?;
             known.extend(some);
@@ -261,9 +261,9 @@ impl Job {
         turns.retain(|turn| portion.owns(turn.movement.from));
         let failed = Verdict::Unknown(UnknownReason::Failed);
         let mut edges = vec![vec![failed; network.edges.len()]; self.models.len()];
-        for local in 0..network.edges.len() {
-            let Some(of_edge) = known.get(&portion.edge(local as u32)) else { continue };
-            edges.iter_mut().zip(of_edge).for_each(|(edges, verdict)| edges[local] = *verdict);
+        for local in EdgeNo::first(network.edges.len()) {
+            let Some(of_edge) = known.get(&portion.edge(local)) else { continue };
+            edges.iter_mut().zip(of_edge).for_each(|(edges, verdict)| edges[local.index()] = *verdict);
         }
         for turn in turns.iter().filter(|_| needed == NeededTasks::Done) {
             let met =

@@ -12,7 +12,7 @@ use super::drive::{Drive, Join};
 use super::grounds::Ground;
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
-use crate::network::{Movement, MovementKind, Movements, Network, PassageKind};
+use crate::network::{EdgeNo, Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
 use crate::turns::{Joint, LengthClass, Opening, StrokeLine, cut_out_of_route};
@@ -31,13 +31,13 @@ const LEAST_STATIONS: usize = 12;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PartKind {
     /// Along an edge.
-    Edge(u32),
+    Edge(EdgeNo),
     /// From one edge into another at a junction, or over several nodes ([`passes_over`]).
     Turn {
         /// The edge that the vehicle comes from.
-        from: u32,
+        from: EdgeNo,
         /// The edge that the vehicle goes into.
-        to: u32,
+        to: EdgeNo,
     },
 }
 
@@ -101,7 +101,7 @@ pub enum AssemblyError {
 #[must_use]
 pub fn passes_over(network: &Network, at: PartKind) -> Option<PassageKind> {
     let PartKind::Turn { from, to } = at else { return None };
-    let edge = |edge: u32| network.edges.get(edge as usize);
+    let edge = |edge: EdgeNo| network.edges.get(edge.index());
     let (from, to) = (edge(from)?, edge(to)?);
     if from.to_node == to.from_node {
         return None;
@@ -136,7 +136,7 @@ pub fn assemble(
 ) -> Result<RoutePath, AssemblyError> {
     let edges = &way.drive.edges;
     let positions: Vec<LonLat> =
-        edges.iter().flat_map(|&edge| network.positions(&network.edges[edge as usize])).collect();
+        edges.iter().flat_map(|&edge| network.positions(&network.edges[edge.index()])).collect();
     let frame = Frame::around(&positions)?;
     frame.forward(&positions)?;
     let mut between = Vec::new();
@@ -181,7 +181,7 @@ pub fn assemble(
 
 /// The movement from one edge into the next, or over the arcs between them. A way may lead over arcs that are no passage of the
 /// network, if its steps are lawful one by one.
-pub(super) fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
+pub(super) fn movement(movements: &Movements, from: EdgeNo, arcs: &[EdgeNo], to: EdgeNo) -> Option<Movement> {
     if arcs.is_empty() {
         return movements.between(from, to).copied();
     }
@@ -235,7 +235,7 @@ struct Leg {
     from: usize,
     to: usize,
     /// Each edge with its last station.
-    edges: Vec<(u32, usize)>,
+    edges: Vec<(EdgeNo, usize)>,
 }
 
 impl Leg {
@@ -248,8 +248,8 @@ impl Leg {
         after: Option<&Between>,
     ) -> Result<Self, AssemblyError> {
         let edges = &way.drive.edges[range.clone()];
-        let unknown = |edge: u32, reason| AssemblyError::Unknown { at: PartKind::Edge(edge), reason };
-        let first_edge = edges.first().copied().unwrap_or_default();
+        let unknown = |edge: EdgeNo, reason| AssemblyError::Unknown { at: PartKind::Edge(edge), reason };
+        let first_edge = edges.first().copied().unwrap_or(EdgeNo::new(0));
         let (stroke, _) = strokes.of(first_edge).ok_or_else(|| unknown(first_edge, UnknownReason::Geometry))?;
         let places: Vec<u32> = edges.iter().filter_map(|&edge| strokes.of(edge)).map(|place| place.1).collect();
         let line = strokes.line(stroke).map_err(|reason| unknown(first_edge, reason))?;
@@ -342,9 +342,9 @@ impl Leg {
         Ok(())
     }
 
-    fn edge_at(&self, station: usize) -> u32 {
+    fn edge_at(&self, station: usize) -> EdgeNo {
         let at = self.edges.iter().find(|(_, end)| station <= *end).or(self.edges.last());
-        at.map_or(0, |edge| edge.0)
+        at.map_or(EdgeNo::new(0), |edge| edge.0)
     }
 }
 
@@ -385,7 +385,7 @@ impl Strung {
     fn turn_at(&self, point: usize) -> PartKind {
         let turns = self.kinds.iter().enumerate().filter(|(_, kind)| matches!(kind, PartKind::Turn { .. }));
         let nearest = turns.min_by_key(|(i, _)| i.abs_diff(point)).map(|(_, kind)| *kind);
-        nearest.or_else(|| self.kinds.get(point).copied()).unwrap_or(PartKind::Edge(0))
+        nearest.or_else(|| self.kinds.get(point).copied()).unwrap_or(PartKind::Edge(EdgeNo::new(0)))
     }
 
     fn finish(self, frame: Frame, spacing_m: f64, turns: &[Between]) -> Result<RoutePath, AssemblyError> {

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 
 /// The place within forbidden sequences: 0 for none, else a node of the tree of all beginnings of sequences.
 pub type Within = u32;
@@ -15,11 +15,11 @@ pub type Within = u32;
 #[derive(Debug, Clone, Default)]
 pub struct Bans {
     /// Children by node and edge. The map is never iterated, so its order does not matter.
-    children: FxHashMap<(Within, u32), Within>,
+    children: FxHashMap<(Within, EdgeNo), Within>,
     /// By node: the longest other beginning that ends in the same edges.
     fallback: Vec<Within>,
-    /// By node: the edge that leads to it; `u32::MAX` for the root.
-    edge: Vec<u32>,
+    /// By node: the edge that leads to it; [`EdgeNo::MAX`] for the root.
+    edge: Vec<EdgeNo>,
     /// By node: whether a sequence ends here.
     forbidden: Vec<bool>,
 }
@@ -33,9 +33,9 @@ impl Bans {
     }
 
     /// The automaton of these sequences. Sequences of less than two edges are ignored.
-    pub fn new<'s>(sequences: impl Iterator<Item = &'s [u32]>) -> Self {
+    pub fn new<'s>(sequences: impl Iterator<Item = &'s [EdgeNo]>) -> Self {
         let mut bans =
-            Self { children: FxHashMap::default(), fallback: vec![0], edge: vec![u32::MAX], forbidden: vec![false] };
+            Self { children: FxHashMap::default(), fallback: vec![0], edge: vec![EdgeNo::MAX], forbidden: vec![false] };
         // Nodes by depth in the order of creation, because fallbacks must be computed breadth first.
         let mut by_depth: Vec<Vec<(Within, Within)>> = Vec::new();
         for sequence in sequences.filter(|edges| edges.len() > 1) {
@@ -82,18 +82,18 @@ impl Bans {
 
     /// The last driven edge at a node. `None` for the root.
     #[must_use]
-    pub fn edge(&self, within: Within) -> Option<u32> {
-        self.edge.get(within as usize).copied().filter(|&edge| edge != u32::MAX)
+    pub fn edge(&self, within: Within) -> Option<EdgeNo> {
+        self.edge.get(within as usize).copied().filter(|&edge| edge != EdgeNo::MAX)
     }
 
     /// The place after driving `edge`, too. `None` if that completes a forbidden sequence.
     #[must_use]
-    pub fn after(&self, within: Within, edge: u32) -> Option<Within> {
+    pub fn after(&self, within: Within, edge: EdgeNo) -> Option<Within> {
         let next = self.step(within, edge);
         (!self.forbidden[next as usize]).then_some(next)
     }
 
-    fn step(&self, mut within: Within, edge: u32) -> Within {
+    fn step(&self, mut within: Within, edge: EdgeNo) -> Within {
         loop {
             match self.children.get(&(within, edge)) {
                 Some(&child) => return child,
@@ -112,8 +112,8 @@ mod tests {
     proptest! {
         #[test]
         fn a_walk_is_stopped_exactly_where_a_sequence_ends(
-            sequences in prop::collection::vec(prop::collection::vec(0..4_u32, 2..5), 0..6),
-            walk in prop::collection::vec(0..4_u32, 0..40),
+            sequences in prop::collection::vec(prop::collection::vec((0..4_u32).prop_map(EdgeNo::new), 2..5), 0..6),
+            walk in prop::collection::vec((0..4_u32).prop_map(EdgeNo::new), 0..40),
         ) {
             let bans = Bans::new(sequences.iter().map(Vec::as_slice));
             let (mut within, mut driven) = (0, Vec::new());

@@ -3,12 +3,13 @@
 use super::permits::Permit;
 use super::plan::Planner;
 use super::snap::Position;
+use crate::network::EdgeNo;
 
 /// The road nearest to a place, whatever its verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beside {
     /// The edge, as an index into the network's edges.
-    pub edge: u32,
+    pub edge: EdgeNo,
     /// The point on it.
     pub position: Position,
     /// Distance from the place, metres.
@@ -25,7 +26,7 @@ impl Planner {
         let snapped = self.snapper.snap(place, most_m, |_| true).ok()?;
         let permits = &self.driver.permits;
         let edge = snapped.on.iter().map(|goal| goal.edge).find(|&edge| !permits.edge(edge))?;
-        let permit = *permits.edges.get(edge as usize)?;
+        let permit = *permits.edges.get(edge.index())?;
         Some(Beside { edge, position: snapped.position, distance_m: snapped.distance_m, permit })
     }
 }

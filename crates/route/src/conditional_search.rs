@@ -6,6 +6,7 @@ use super::graph::{Access, BARRED};
 use super::obstacles::{self, Refutation};
 use super::plan::{Planner, Question, Unanswered};
 use super::snap::Snapped;
+use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
 
 /// How many ways are tried at most, if the question allows as many.
@@ -45,7 +46,7 @@ impl Planner {
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
         let access = conditional_access(self.graph.roads(), &self.driver.permits, refuted);
-        let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
+        let open = |edge: EdgeNo| access.edges.get(edge.index()).is_some_and(|&price| price != BARRED);
         let snap = |place| self.snapper.snap(place, question.snap_m, open);
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
         searching();

@@ -2,13 +2,14 @@
 //!
 //! All driven edges are included, also arcs, so that lengths, times and restrictions need no special case for passages.
 
+use crate::network::EdgeNo;
 use std::ops::Range;
 
 /// Edges in driving order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Drive {
     /// All edges, including the arcs of passages.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeNo>,
     /// The ranges of `edges` that are arcs, one range for each passage, in order. Before and after each range there is an edge
     /// that is no arc of a passage.
     pub over: Vec<Range<usize>>,
@@ -18,11 +19,11 @@ pub struct Drive {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Join<'d> {
     /// The edge that the vehicle comes from.
-    pub from: u32,
+    pub from: EdgeNo,
     /// The arcs between the two edges. Empty unless the step is a passage.
-    pub arcs: &'d [u32],
+    pub arcs: &'d [EdgeNo],
     /// The edge that the vehicle goes into.
-    pub to: u32,
+    pub to: EdgeNo,
     /// The index of `to` in [`Drive::edges`].
     pub at: usize,
 }
@@ -54,17 +55,21 @@ impl Drive {
 mod tests {
     use super::*;
 
+    fn edges(numbers: &[u32]) -> Vec<EdgeNo> {
+        numbers.iter().copied().map(EdgeNo::new).collect()
+    }
+
     #[test]
     fn joins_step_over_arcs_and_ways_go_on_where_they_end() {
-        let first = Drive { edges: vec![1, 2, 90, 91, 3], over: vec![2..4] };
+        let first = Drive { edges: edges(&[1, 2, 90, 91, 3]), over: vec![2..4] };
         let mut whole = Drive::default();
         whole.go_on(&first);
         assert_eq!(whole, first);
-        whole.go_on(&Drive { edges: vec![3, 92, 4, 5], over: vec![1..2] });
-        assert_eq!(whole.edges, [1, 2, 90, 91, 3, 92, 4, 5]);
+        whole.go_on(&Drive { edges: edges(&[3, 92, 4, 5]), over: vec![1..2] });
+        assert_eq!(whole.edges, edges(&[1, 2, 90, 91, 3, 92, 4, 5]));
         assert_eq!(whole.over, [2..4, 5..6]);
-        let joins: Vec<_> = whole.joins().map(|j| (j.from, j.arcs.to_vec(), j.to, j.at)).collect();
-        assert_eq!(joins, [(1, vec![], 2, 1), (2, vec![90, 91], 3, 4), (3, vec![92], 4, 6), (4, vec![], 5, 7)]);
-        assert_eq!(Drive { edges: vec![7], over: Vec::new() }.joins().count(), 0);
+        let joins: Vec<_> = whole.joins().map(|j| (j.from.get(), j.arcs.to_vec(), j.to.get(), j.at)).collect();
+        assert_eq!(joins, [(1, vec![], 2, 1), (2, edges(&[90, 91]), 3, 4), (3, edges(&[92]), 4, 6), (4, vec![], 5, 7)]);
+        assert_eq!(Drive { edges: edges(&[7]), over: Vec::new() }.joins().count(), 0);
     }
 }

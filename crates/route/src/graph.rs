@@ -12,7 +12,7 @@ use super::bans::{Bans, Within};
 use super::roads::Roads;
 use super::speeds::{Measure, Speeds};
 use super::through::EndsOnly;
-use crate::network::{MovementKind, Movements, Network, Passage};
+use crate::network::{EdgeNo, MovementKind, Movements, Network, Passage};
 use crate::vehicle::Vehicle;
 
 /// The cost of what may not be used.
@@ -42,7 +42,7 @@ pub struct Graph {
     ends_only: EndsOnly,
 }
 
-/// A state of the search: the index of an edge, or, beyond all edges, a node of the forbidden sequences.
+/// A state of the search: the number of an edge, or, beyond all edges, a node of the forbidden sequences.
 pub(super) type State = u32;
 
 /// The value for a step that is no passage.
@@ -99,13 +99,13 @@ impl Graph {
 
     /// The cost of an edge, milliseconds or millimetres.
     #[must_use]
-    pub fn cost(&self, edge: u32) -> u64 {
-        self.costs.get(edge as usize).copied().unwrap_or(BARRED)
+    pub fn cost(&self, edge: EdgeNo) -> u64 {
+        self.costs.get(edge.index()).copied().unwrap_or(BARRED)
     }
 
     /// The cost of a share of an edge, rounded up.
     #[must_use]
-    pub fn part_cost(&self, edge: u32, share: f64) -> u64 {
+    pub fn part_cost(&self, edge: EdgeNo, share: f64) -> u64 {
         (self.cost(edge) as f64 * share.clamp(0.0, 1.0)).ceil() as u64
     }
 
@@ -164,22 +164,22 @@ impl Graph {
     }
 
     /// The state of an edge on which a way begins.
-    pub(super) fn first(&self, edge: u32) -> Option<State> {
+    pub(super) fn first(&self, edge: EdgeNo) -> Option<State> {
         self.bans.after(0, edge).map(|within| self.state(edge, within))
     }
 
-    pub(super) fn edge_of(&self, state: State) -> u32 {
+    pub(super) fn edge_of(&self, state: State) -> EdgeNo {
         let state = self.after_stop(state);
         let within = (state as usize).checked_sub(self.network().edges.len());
-        within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(state)
+        within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(EdgeNo::new(state))
     }
 
     fn within(&self, state: State) -> Within {
         self.after_stop(state).saturating_sub(self.network().edges.len() as u32)
     }
 
-    fn state(&self, edge: u32, within: Within) -> State {
-        if within == 0 { edge } else { self.network().edges.len() as u32 + within }
+    fn state(&self, edge: EdgeNo, within: Within) -> State {
+        if within == 0 { edge.get() } else { self.network().edges.len() as u32 + within }
     }
 
     /// The cost of a passage without the edges before and after it: its arcs, a turn onto the ring and a turn off it.
@@ -188,7 +188,7 @@ impl Graph {
     }
 
     /// The arcs of a passage. Empty for [`NO_PASSAGE`].
-    pub(super) fn arcs(&self, passage: u32) -> &[u32] {
+    pub(super) fn arcs(&self, passage: u32) -> &[EdgeNo] {
         self.movements().passages().get(passage as usize).map_or(&[], |passage| &passage.through)
     }
 
@@ -223,8 +223,8 @@ impl Graph {
         &self,
         access: &Access,
         mut inside: bool,
-        from: u32,
-        driven: impl IntoIterator<Item = u32>,
+        from: EdgeNo,
+        driven: impl IntoIterator<Item = EdgeNo>,
     ) -> Option<(u32, u64)> {
         if self.ends_only.is_empty() {
             return Some((0, 0));
@@ -244,7 +244,7 @@ impl Graph {
 }
 
 /// The price of a step together with the edge that it leads to. `None` if either may not be used.
-fn price(access: &Access, step: Option<&u64>, to: u32) -> Option<u64> {
-    let (by_step, by_edge) = (*step?, *access.edges.get(to as usize)?);
+fn price(access: &Access, step: Option<&u64>, to: EdgeNo) -> Option<u64> {
+    let (by_step, by_edge) = (*step?, *access.edges.get(to.index())?);
     (by_step != BARRED && by_edge != BARRED).then(|| by_step.saturating_add(by_edge))
 }

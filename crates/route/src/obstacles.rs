@@ -7,7 +7,7 @@ use super::assemble::{AssemblyError, PartKind, passes_over};
 use super::drive::Drive;
 use super::graph::{Access, BARRED};
 use super::permits::{Permit, Permits};
-use crate::network::{Movements, Network, destination_tag};
+use crate::network::{EdgeNo, Movements, Network, destination_tag};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::osm::rounded;
 use crate::vehicle::Vehicle;
@@ -59,7 +59,7 @@ pub struct Obstacle {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockedWay {
     /// All its edges in driving order.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeNo>,
     /// The share of the first edge before its beginning, and of the last edge up to its end, 0..=1.
     pub start: f64,
     /// See `start`.
@@ -73,7 +73,7 @@ impl BlockedWay {
         let last = self.edges.len().saturating_sub(1);
         let mut line: Vec<[f64; 2]> = Vec::new();
         for (i, &edge) in self.edges.iter().enumerate() {
-            let Some(edge) = network.edges.get(edge as usize) else { continue };
+            let Some(edge) = network.edges.get(edge.index()) else { continue };
             let whole: Vec<[f64; 2]> = network.positions(edge).map(|at| <[f64; 2]>::from(at.degrees())).collect();
             let from = if i == 0 { self.start } else { 0.0 };
             let to = if i == last { self.end } else { 1.0 };
@@ -124,7 +124,7 @@ pub enum Basis {
 
 impl Obstacle {
     /// A road that is open to a destination only, by its first edge on the way.
-    pub(super) fn passed_through(edge: u32, policy: Policy, permit: Permit) -> Self {
+    pub(super) fn passed_through(edge: EdgeNo, policy: Policy, permit: Permit) -> Self {
         let at = PartKind::Edge(edge);
         Self { at, policy, permit, refuted: false, destination_only: true, missing_m: None }
     }
@@ -145,12 +145,12 @@ impl Obstacle {
     #[must_use]
     pub fn tag(&self, network: &Network, vehicle: &Vehicle) -> Option<String> {
         let PartKind::Edge(edge) = self.at else { return None };
-        let edge = network.edges.get(edge as usize).filter(|_| self.destination_only)?;
+        let edge = network.edges.get(edge.index()).filter(|_| self.destination_only)?;
         destination_tag(network, edge, vehicle)
     }
 
     /// The edge at or after which it is.
-    pub(super) fn last_edge(&self) -> u32 {
+    pub(super) fn last_edge(&self) -> EdgeNo {
         match self.at {
             PartKind::Edge(edge) | PartKind::Turn { to: edge, .. } => edge,
         }
@@ -162,7 +162,7 @@ impl Obstacle {
         if self.destination_only {
             return None;
         }
-        let edge = |edge: u32| network.edges.get(edge as usize);
+        let edge = |edge: EdgeNo| network.edges.get(edge.index());
         Some(match self.at {
             PartKind::Edge(own) => {
                 let strip = network.section(edge(own)?).strip(self.policy);
@@ -233,7 +233,7 @@ pub(super) fn on(
 /// The slot of a place's price in `access`.
 pub(super) fn slot<'a>(access: &'a mut Access, movements: &Movements, at: PartKind) -> Option<&'a mut u64> {
     match at {
-        PartKind::Edge(edge) => access.edges.get_mut(edge as usize),
+        PartKind::Edge(edge) => access.edges.get_mut(edge.index()),
         PartKind::Turn { from, to } => match movements.index(from, to) {
             Some(place) => access.movements.get_mut(place),
             None => access.passages.get_mut(movements.passage(from, to)?),
@@ -243,7 +243,7 @@ pub(super) fn slot<'a>(access: &'a mut Access, movements: &Movements, at: PartKi
 
 fn permit(permits: &Permits, movements: &Movements, at: PartKind) -> Option<Permit> {
     match at {
-        PartKind::Edge(edge) => permits.edges.get(edge as usize).copied(),
+        PartKind::Edge(edge) => permits.edges.get(edge.index()).copied(),
         PartKind::Turn { from, to } => match movements.index(from, to) {
             Some(place) => permits.movements.get(place).copied(),
             None => permits.passages.get(movements.passage(from, to)?).copied(),

@@ -1,7 +1,7 @@
 //! The edges and movements that a vehicle may use, with verdict and RSC. A search starts from them.
 
 use super::graph::{Access, BARRED};
-use crate::network::{MovementKind, Movements, Network};
+use crate::network::{EdgeNo, MovementKind, Movements, Network};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::vehicle::Vehicle;
@@ -54,7 +54,7 @@ impl Permits {
         settings: Settings,
         edges: Vec<Permit>,
         movements: &Movements,
-        turn: impl Fn(u32, u32) -> Permit,
+        turn: impl Fn(EdgeNo, EdgeNo) -> Permit,
     ) -> Self {
         let permit = |m: &crate::network::Movement| match m.kind {
             MovementKind::StraightOn => Permit::COVERED,
@@ -68,9 +68,9 @@ impl Permits {
     /// Tells of edges and passages that lack room what the rules of the road say besides, which a database keeps for safe ones only. What a rule
     /// may close is then no matter of room: no condition opens it.
     pub(super) fn add_rules(&mut self, network: &Network, movements: &Movements, vehicle: &Vehicle) {
-        let rule = |edge: u32| network.legal(network.edges.get(edge as usize)?).forbids(vehicle);
+        let rule = |edge: EdgeNo| network.legal(network.edges.get(edge.index())?).forbids(vehicle);
         let lacks = |permit: &Permit| matches!(permit.verdict, Verdict::Unsafe(_));
-        for (edge, permit) in (0..).zip(&mut self.edges).filter(|(_, permit)| lacks(permit)) {
+        for (edge, permit) in EdgeNo::all().zip(&mut self.edges).filter(|(_, permit)| lacks(permit)) {
             permit.verdict = rule(edge).unwrap_or(permit.verdict);
         }
         let passages = movements.passages().iter().zip(&mut self.passages);
@@ -95,7 +95,7 @@ impl Permits {
     pub(super) fn access_by(
         &self,
         movements: &Movements,
-        edge: impl Fn(u32, &Permit) -> u64,
+        edge: impl Fn(EdgeNo, &Permit) -> u64,
         turn: impl Fn(&Permit) -> u64,
     ) -> Access {
         let cost = |permit: &Permit| if permit.usable() { 0 } else { turn(permit) };
@@ -106,7 +106,7 @@ impl Permits {
             if p.forbidden.is_some() { BARRED } else { cost(permit) }
         };
         Access {
-            edges: (0..)
+            edges: EdgeNo::all()
                 .zip(&self.edges)
                 .map(|(i, permit)| if permit.usable() { 0 } else { edge(i, permit) })
                 .collect(),
@@ -118,7 +118,7 @@ impl Permits {
 
     /// Whether an edge may be used.
     #[must_use]
-    pub fn edge(&self, edge: u32) -> bool {
-        self.edges.get(edge as usize).is_some_and(Permit::usable)
+    pub fn edge(&self, edge: EdgeNo) -> bool {
+        self.edges.get(edge.index()).is_some_and(Permit::usable)
     }
 }

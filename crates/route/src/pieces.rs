@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::roads::Roads;
 use crate::corridor::{AreaSpan, Corridor, Frame};
-use crate::network::{Movement, Network};
+use crate::network::{EdgeNo, Movement, Network};
 use crate::settings::Settings;
 use crate::turns::{Joint, LengthClass, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
@@ -40,8 +40,12 @@ pub trait Turns: Send {
     ///
     /// # Errors
     /// The turn has no corridor; the error is the reason.
-    fn pieces(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32])
-    -> Result<Vec<TurnPiece>, UnknownReason>;
+    fn pieces(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[EdgeNo],
+    ) -> Result<Vec<TurnPiece>, UnknownReason>;
 
     /// The first of [`Turns::pieces`] alone, if that is less work.
     ///
@@ -51,7 +55,7 @@ pub trait Turns: Send {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
     ) -> Result<Option<TurnPiece>, UnknownReason> {
         Ok(self.pieces(strokes, movement, arcs)?.into_iter().next())
     }
@@ -64,7 +68,7 @@ pub trait Turns: Send {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
         code: i64,
     ) -> Result<Option<TurnPiece>, UnknownReason> {
         Ok(self.pieces(strokes, movement, arcs)?.into_iter().find(|piece| piece.code == code))
@@ -83,7 +87,7 @@ struct Made {
 }
 
 impl Made {
-    fn make_all(&mut self, turns: &dyn Turns, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
+    fn make_all(&mut self, turns: &dyn Turns, strokes: &mut Strokes, movement: &Movement, arcs: &[EdgeNo]) {
         if !self.all {
             let pieces = turns.pieces(strokes, movement, arcs);
             self.paths = Some(pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect()));
@@ -104,9 +108,9 @@ impl Made {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TurnEnds {
     /// The edge that the vehicle comes from.
-    pub from: u32,
+    pub from: EdgeNo,
     /// The edge that the vehicle goes into.
-    pub to: u32,
+    pub to: EdgeNo,
 }
 
 impl TurnEnds {
@@ -143,7 +147,7 @@ impl Menu {
     }
 
     /// Forgets turns of which this holds, by the edges before and after them.
-    pub(super) fn forget(&mut self, changed: impl Fn(u32, u32) -> bool) {
+    pub(super) fn forget(&mut self, changed: impl Fn(EdgeNo, EdgeNo) -> bool) {
         self.made.retain(|ends, _| !changed(ends.from, ends.to));
         self.places.retain(|ends, _| !changed(ends.from, ends.to));
     }
@@ -161,7 +165,7 @@ impl Menu {
         &mut self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
     ) -> Result<Arc<TurnPiece>, UnknownReason> {
         let key = TurnEnds::of(movement);
         let turns = self.turns.as_ref();
@@ -215,7 +219,7 @@ impl Menu {
     }
 
     /// Makes all paths of a turn, so that another one can be chosen.
-    pub(super) fn make_all(&mut self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
+    pub(super) fn make_all(&mut self, strokes: &mut Strokes, movement: &Movement, arcs: &[EdgeNo]) {
         let made = self.made.entry(TurnEnds::of(movement)).or_default();
         made.make_all(self.turns.as_ref(), strokes, movement, arcs);
     }
@@ -242,7 +246,7 @@ impl Menu {
 pub struct NoTurns;
 
 impl Turns for NoTurns {
-    fn pieces(&self, _: &mut Strokes, _: &Movement, _: &[u32]) -> Result<Vec<TurnPiece>, UnknownReason> {
+    fn pieces(&self, _: &mut Strokes, _: &Movement, _: &[EdgeNo]) -> Result<Vec<TurnPiece>, UnknownReason> {
         Err(UnknownReason::Geometry)
     }
 }
@@ -266,7 +270,7 @@ impl Strokes {
         for (stroke, facts) in (0_u32..).zip(&network.strokes) {
             let edges = &network.stroke_edges[facts.edges.start as usize..facts.edges.end as usize];
             for (i, &edge) in (0_u32..).zip(edges) {
-                place[edge as usize] = (stroke, i);
+                place[edge.index()] = (stroke, i);
             }
         }
         let params = settings.turn_params();
@@ -300,8 +304,8 @@ impl Strokes {
     }
 
     /// The stroke of an edge, and the edge's index in it.
-    pub(super) fn of(&self, edge: u32) -> Option<(u32, u32)> {
-        self.place.get(edge as usize).copied().filter(|place| place.0 != u32::MAX)
+    pub(super) fn of(&self, edge: EdgeNo) -> Option<(u32, u32)> {
+        self.place.get(edge.index()).copied().filter(|place| place.0 != u32::MAX)
     }
 
     /// The line of a stroke.
@@ -318,7 +322,7 @@ impl Strokes {
     ///
     /// # Errors
     /// The stroke has no corridor; the error is the reason.
-    pub fn line_of(&mut self, edge: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
+    pub fn line_of(&mut self, edge: EdgeNo) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (stroke, _) = self.of(edge).ok_or(UnknownReason::Geometry)?;
         self.line(stroke)
     }

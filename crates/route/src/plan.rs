@@ -21,7 +21,7 @@ use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use super::turning::MadeTurns;
 use super::whole::{Certified, Whole};
-use crate::network::{MovementKind, Network};
+use crate::network::{EdgeNo, MovementKind, Network};
 use crate::stop::{Stop, Stopped};
 
 /// The greatest share of its length that an alternative may have in common with an earlier route.
@@ -180,7 +180,7 @@ impl Planner {
         access: &mut Access,
         question: &Question,
         answer: &mut Answer,
-        wanted: &dyn Fn(&[u32]) -> bool,
+        wanted: &dyn Fn(&[EdgeNo]) -> bool,
     ) -> Result<bool, Stopped> {
         loop {
             let Some((found, start, end)) = self.way(access, &answer.snapped)? else { return Ok(false) };
@@ -237,8 +237,8 @@ impl Planner {
     /// The driving time by the table of speeds, seconds.
     fn time_s(&self, drive: &Drive, start: f64, end: f64) -> f64 {
         let network = self.graph.network();
-        let time = |(share, edge): (f64, u32)| {
-            share * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
+        let time = |(share, edge): (f64, EdgeNo)| {
+            share * self.speeds.cost(network, &network.edges[edge.index()], Measure::Time) as f64
         };
         let driven: f64 = shares(drive, start, end).map(time).sum();
         let turns = turns(&self.graph, drive) * self.speeds.turn_cost(Measure::Time);
@@ -275,7 +275,7 @@ impl Planner {
         let mut first = 0;
         let between = snapped.get(1..snapped.len().saturating_sub(1)).unwrap_or_default();
         for place in between {
-            let here = |edge: &u32| place.on.iter().any(|on| on.edge == *edge);
+            let here = |edge: &EdgeNo| place.on.iter().any(|on| on.edge == *edge);
             if let Some(at) = drive.edges.iter().skip(first).position(here) {
                 first += at;
                 stops.push(first);
@@ -283,8 +283,8 @@ impl Planner {
         }
         let runs = self.graph.ends_only().passed(&drive.edges, &stops);
         let of_run = |run: std::ops::Range<usize>| drive.edges.get(run.start).copied();
-        let obstacle = |edge: u32| {
-            let permit = *self.driver.permits.edges.get(edge as usize)?;
+        let obstacle = |edge: EdgeNo| {
+            let permit = *self.driver.permits.edges.get(edge.index())?;
             Some(Obstacle::passed_through(edge, self.driver.permits.settings.policy, permit))
         };
         runs.into_iter().filter_map(of_run).filter_map(obstacle).collect()
@@ -299,24 +299,24 @@ impl Planner {
             rounds -= 1;
             for route in &answer.routes {
                 for &edge in &route.drive.edges {
-                    let slot = &mut access.edges[edge as usize];
+                    let slot = &mut access.edges[edge.index()];
                     if *slot != BARRED {
                         *slot += self.graph.cost(edge) / 2;
                     }
                 }
             }
-            let known: Vec<Vec<u32>> = answer.routes.iter().map(|route| route.drive.edges.clone()).collect();
+            let known: Vec<Vec<EdgeNo>> = answer.routes.iter().map(|route| route.drive.edges.clone()).collect();
             let roads = Arc::clone(self.graph.roads());
             let network = &roads.network;
             let longest = (first_cost as f64 * MOST_LONGER) as u64;
-            let costs: Vec<u64> = (0..network.edges.len() as u32).map(|edge| self.graph.cost(edge)).collect();
-            let wanted = |edges: &[u32]| {
-                let cost: u64 = edges.iter().map(|&edge| costs[edge as usize]).sum();
-                let own = |on: &dyn Fn(&u32) -> bool| -> f64 {
-                    edges.iter().filter(|e| on(e)).map(|&e| network.length_m(&network.edges[e as usize])).sum()
+            let costs: Vec<u64> = EdgeNo::first(network.edges.len()).map(|edge| self.graph.cost(edge)).collect();
+            let wanted = |edges: &[EdgeNo]| {
+                let cost: u64 = edges.iter().map(|&edge| costs[edge.index()]).sum();
+                let own = |on: &dyn Fn(&EdgeNo) -> bool| -> f64 {
+                    edges.iter().filter(|e| on(e)).map(|&e| network.length_m(&network.edges[e.index()])).sum()
                 };
                 let all = own(&|_| true);
-                cost <= longest + costs[edges[0] as usize]
+                cost <= longest + costs[edges[0].index()]
                     && known.iter().all(|other| own(&|edge| other.contains(edge)) <= MOST_SHARED * all)
             };
             if self.next_route(&mut access, question, answer, &wanted)?
@@ -336,7 +336,7 @@ fn costs_of(graph: &Graph, route: &Route) -> u64 {
 }
 
 /// The driven share of each edge. The way begins at the share `start` of its first edge and ends at the share `end` of its last.
-fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, u32)> {
+fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, EdgeNo)> {
     let last = drive.edges.len() - 1;
     drive.edges.iter().enumerate().map(move |(i, &edge)| {
         let from = if i == 0 { start } else { 0.0 };

@@ -4,7 +4,7 @@
 //! same functions answer what would be reachable if one more edge were safe ([`with_edge`]).
 
 use super::graph::{Access, BARRED, Graph, State};
-use crate::network::MovementKind;
+use crate::network::{EdgeNo, MovementKind};
 
 /// The reachable edges.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,8 +26,8 @@ pub struct Components {
 
 /// The edges that can be reached from any of the edges `starts`.
 #[must_use]
-pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> ReachableEdges {
-    let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
+pub fn reach(graph: &Graph, access: &Access, starts: &[EdgeNo]) -> ReachableEdges {
+    let usable = |edge: &&EdgeNo| access.edges.get(edge.index()).is_some_and(|&cost| cost != BARRED);
     let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
     let mut steps: Vec<(State, State)> = Vec::new();
     let mut flood_ahead = |first: &[State]| {
@@ -59,7 +59,7 @@ pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> ReachableEdges {
     let edges = |states: &[bool]| {
         let mut edges = vec![false; graph.network().edges.len()];
         for (state, _) in states.iter().enumerate().filter(|(_, on)| **on) {
-            if let Some(edge) = edges.get_mut(graph.edge_of(state as State) as usize) {
+            if let Some(edge) = edges.get_mut(graph.edge_of(state as State).index()) {
                 *edge = true;
             }
         }
@@ -88,9 +88,9 @@ fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn Fn
 
 /// The access if an edge and every lawful turn and passage into and out of it were safe.
 #[must_use]
-pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
+pub fn with_edge(graph: &Graph, access: &Access, edge: EdgeNo) -> Access {
     let mut opened = access.clone();
-    if let Some(slot) = opened.edges.get_mut(edge as usize) {
+    if let Some(slot) = opened.edges.get_mut(edge.index()) {
         *slot = 0;
     }
     for (slot, movement) in opened.movements.iter_mut().zip(graph.movements().all()) {
@@ -112,8 +112,8 @@ pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
 #[must_use]
 pub fn components(graph: &Graph, access: &Access) -> Components {
     let edges = graph.network().edges.len();
-    let usable = |edge: u32| access.edges[edge as usize] != BARRED;
-    let next = |edge: u32| {
+    let usable = |edge: EdgeNo| access.edges[edge.index()] != BARRED;
+    let next = |edge: EdgeNo| {
         let first = graph.movements().first(edge);
         let ends_only = graph.ends_only();
         let movements = graph.movements().after(edge).iter().enumerate().filter_map(move |(i, movement)| {
@@ -131,13 +131,13 @@ pub fn components(graph: &Graph, access: &Access) -> Components {
     let (mut number, mut low, mut on_stack) = (vec![NEW; edges], vec![0_u32; edges], vec![false; edges]);
     let (mut stack, mut found, mut count) = (Vec::new(), vec![NEW; edges], 0_u32);
     let mut counter = 0;
-    for root in (0..edges as u32).filter(|&edge| usable(edge)) {
-        if number[root as usize] != NEW {
+    for root in EdgeNo::first(edges).filter(|&edge| usable(edge)) {
+        if number[root.index()] != NEW {
             continue;
         }
         let mut open = vec![(root, 0_usize)];
         while let Some((edge, child)) = open.last_mut() {
-            let e = *edge as usize;
+            let e = edge.index();
             if *child == 0 && number[e] == NEW {
                 (number[e], low[e]) = (counter, counter);
                 counter += 1;
@@ -146,18 +146,18 @@ pub fn components(graph: &Graph, access: &Access) -> Components {
             }
             if let Some(to) = next(*edge).nth(*child) {
                 *child += 1;
-                if number[to as usize] == NEW {
+                if number[to.index()] == NEW {
                     open.push((to, 0));
-                } else if on_stack[to as usize] {
-                    low[e] = low[e].min(number[to as usize]);
+                } else if on_stack[to.index()] {
+                    low[e] = low[e].min(number[to.index()]);
                 }
                 continue;
             }
             if low[e] == number[e] {
                 while let Some(top) = stack.pop() {
-                    on_stack[top as usize] = false;
-                    found[top as usize] = count;
-                    if top as usize == e {
+                    on_stack[top.index()] = false;
+                    found[top.index()] = count;
+                    if top.index() == e {
                         break;
                     }
                 }
@@ -165,7 +165,7 @@ pub fn components(graph: &Graph, access: &Access) -> Components {
             }
             open.pop();
             if let Some((parent, _)) = open.last() {
-                low[*parent as usize] = low[*parent as usize].min(low[e]);
+                low[parent.index()] = low[parent.index()].min(low[e]);
             }
         }
     }

@@ -10,6 +10,7 @@ use super::assemble::{PartKind, RoutePath};
 use super::driver::Driver;
 use super::plan::Answer;
 use super::route::Route;
+use crate::network::EdgeNo;
 use crate::rows::{Relative, Standing};
 use crate::stet::{self, Model, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -20,14 +21,14 @@ use crate::verdict::{UnknownReason, Verdict};
 pub struct Standings {
     /// One for each edge.
     pub edges: Vec<Standing>,
-    /// By the first and last edge of a turn or passage (indices into `Network::edges`).
-    pub turns: FxHashMap<(u32, u32), Standing>,
+    /// By the first and last edge of a turn or passage.
+    pub turns: FxHashMap<(EdgeNo, EdgeNo), Standing>,
 }
 
 impl Standings {
     fn at(&self, at: PartKind) -> Option<Standing> {
         match at {
-            PartKind::Edge(edge) => self.edges.get(edge as usize).copied(),
+            PartKind::Edge(edge) => self.edges.get(edge.index()).copied(),
             PartKind::Turn { from, to } => self.turns.get(&(from, to)).copied(),
         }
     }

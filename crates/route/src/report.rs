@@ -9,7 +9,7 @@ use super::plan::Answer;
 use super::route::{LimitedStretch, PartResult, Route};
 use super::title::{place, title};
 use crate::corridor::FrameError;
-use crate::network::{Network, PassageKind};
+use crate::network::{EdgeNo, Network, PassageKind};
 use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
 use crate::stet::Model;
@@ -20,7 +20,7 @@ use crate::words::{Named, verdict_words};
 pub const CONDITIONAL: &str = "conditional";
 
 fn ids(network: &Network, at: PartKind) -> Value {
-    let id = |edge: u32| network.edges.get(edge as usize).map(|edge| edge.id);
+    let id = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| edge.id);
     match at {
         PartKind::Edge(edge) => json!({"kind": "edge", "edge_id": id(edge), "title": title(network, at)}),
         PartKind::Turn { from, to } => {

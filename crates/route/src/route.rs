@@ -112,7 +112,7 @@ impl Route {
         let mut stretches: Vec<LimitedStretch> = Vec::new();
         for part in &self.path.parts {
             let PartKind::Edge(no) = part.kind else { continue };
-            let Some(edge) = network.edges.get(no as usize) else { continue };
+            let Some(edge) = network.edges.get(no.index()) else { continue };
             let Some(tag) = tag_of(edge) else { continue };
             let from_m = part.stations.start as f64 * spacing_m;
             let to_m = part.stations.end.saturating_sub(1) as f64 * spacing_m;

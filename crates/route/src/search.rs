@@ -8,13 +8,14 @@ use std::collections::BinaryHeap;
 
 use super::drive::Drive;
 use super::graph::{Access, BARRED, Graph, NO_PASSAGE, State};
+use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
 
 /// A possible beginning of a way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     /// The edge.
-    pub edge: u32,
+    pub edge: EdgeNo,
     /// The share of the edge before the beginning, 0..=1.
     pub share: f64,
     /// The cost so far.
@@ -26,7 +27,7 @@ pub struct Start {
 impl Start {
     /// A beginning on an edge, without cost so far.
     #[must_use]
-    pub fn new(edge: u32, share: f64) -> Self {
+    pub fn new(edge: EdgeNo, share: f64) -> Self {
         Self { edge, share, cost: 0, state: None }
     }
 }
@@ -35,7 +36,7 @@ impl Start {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// The edge.
-    pub edge: u32,
+    pub edge: EdgeNo,
     /// The share of the edge up to the end, 0..=1.
     pub share: f64,
 }
@@ -125,7 +126,7 @@ impl<'g> Search<'g> {
     }
 
     fn begin(&mut self, number: usize, start: &Start) {
-        let by_edge = self.access.edges.get(start.edge as usize).copied().unwrap_or(BARRED);
+        let by_edge = self.access.edges.get(start.edge.index()).copied().unwrap_or(BARRED);
         let Some(state) = start.state.or_else(|| self.graph.first(start.edge)) else { return };
         if by_edge == BARRED {
             return;
@@ -239,7 +240,7 @@ pub fn search_over(
             let mut drive = ways[found.start].clone();
             drive.go_on(&found.drive);
             // The edge's price is already in the cost to the place, and would be counted again from there.
-            let paid = access.edges[goal.edge as usize];
+            let paid = access.edges[goal.edge.index()];
             let start = Start {
                 edge: goal.edge,
                 share: goal.share,

@@ -10,7 +10,7 @@ use rstar::{AABB, RTree};
 
 use super::roads::Roads;
 use super::search::Goal;
-use crate::network::{EARTH_RADIUS_M, offset_m};
+use crate::network::{EARTH_RADIUS_M, EdgeNo, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 
@@ -73,14 +73,14 @@ pub enum SnapError {
     },
 }
 
-type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
+type Segment = GeomWithData<Rectangle<[f64; 2]>, (EdgeNo, u32)>;
 
 /// A spatial index of all pieces of road, by their segments.
 pub struct Snapper {
     roads: Arc<Roads>,
     tree: RTree<Segment>,
     /// The first edge and another edge of each piece; sorted.
-    twins: Vec<(u32, u32)>,
+    twins: Vec<(EdgeNo, EdgeNo)>,
 }
 
 impl Snapper {
@@ -90,10 +90,10 @@ impl Snapper {
         let network = &roads.network;
         let mut segments = Vec::new();
         let mut twins = Vec::new();
-        let mut before: Option<u32> = None;
-        for (index, edge) in (0_u32..).zip(&network.edges) {
-            let same = |&b: &u32| {
-                let b = &network.edges[b as usize];
+        let mut before: Option<EdgeNo> = None;
+        for (index, edge) in network.numbered_edges() {
+            let same = |&b: &EdgeNo| {
+                let b = &network.edges[b.index()];
                 b.road == edge.road && b.shape == edge.shape
             };
             if let Some(first) = before.filter(same) {
@@ -115,7 +115,7 @@ impl Snapper {
     ///
     /// # Errors
     /// There is no such road within `most_m` metres.
-    pub fn snap(&self, place: Position, most_m: f64, usable: impl Fn(u32) -> bool) -> Result<Snapped, SnapError> {
+    pub fn snap(&self, place: Position, most_m: f64, usable: impl Fn(EdgeNo) -> bool) -> Result<Snapped, SnapError> {
         let mut reach_m = most_m.max(50.0);
         loop {
             if let Some(snapped) = self.nearest_within(place, reach_m, &usable) {
@@ -132,16 +132,16 @@ impl Snapper {
         }
     }
 
-    fn nearest_within(&self, place: Position, reach_m: f64, usable: &impl Fn(u32) -> bool) -> Option<Snapped> {
+    fn nearest_within(&self, place: Position, reach_m: f64, usable: &impl Fn(EdgeNo) -> bool) -> Option<Snapped> {
         let cos = place.lat.to_radians().cos().max(0.01);
         let dy = (reach_m / EARTH_RADIUS_M).to_degrees();
         let dx = dy / cos;
         let here = LonLat::from(place);
         let around = AABB::from_corners([place.lon - dx, place.lat - dy], [place.lon + dx, place.lat + dy]);
-        let mut best: Option<(f64, u32, u32, f64)> = None;
+        let mut best: Option<(f64, EdgeNo, u32, f64)> = None;
         for segment in self.tree.locate_in_envelope_intersecting(&around) {
             let (edge, vertex) = segment.data;
-            let shape = &self.roads.network.shapes[self.roads.network.edges[edge as usize].shape.start as usize..];
+            let shape = &self.roads.network.shapes[self.roads.network.edges[edge.index()].shape.start as usize..];
             let ends = [0, 1].map(|i| offset_m(here, shape[vertex as usize + i]));
             let (distance_m, along) = foot(ends);
             let better = best.is_none_or(|(d, e, v, _)| (distance_m, edge, vertex) < (d, e, v));
@@ -153,8 +153,15 @@ impl Snapper {
         Some(self.snapped(edge, vertex, along, distance_m, usable))
     }
 
-    fn snapped(&self, edge: u32, vertex: u32, along: f64, distance_m: f64, usable: &impl Fn(u32) -> bool) -> Snapped {
-        let facts = &self.roads.network.edges[edge as usize];
+    fn snapped(
+        &self,
+        edge: EdgeNo,
+        vertex: u32,
+        along: f64,
+        distance_m: f64,
+        usable: &impl Fn(EdgeNo) -> bool,
+    ) -> Snapped {
+        let facts = &self.roads.network.edges[edge.index()];
         let shape = &self.roads.network.shapes[facts.shape.start as usize..facts.shape.end as usize];
         let origin = shape[vertex as usize].degrees();
         let origin = Position { lon: origin.0, lat: origin.1 };
@@ -165,8 +172,8 @@ impl Snapper {
         let lengths: Vec<f64> = shape.windows(2).map(length_m).collect();
         let before: f64 = lengths[..vertex as usize].iter().sum::<f64>() + along * lengths[vertex as usize];
         let share = (before / lengths.iter().sum::<f64>().max(1e-9)).clamp(0.0, 1.0);
-        let on = |&edge: &u32| {
-            let backward = self.roads.network.edges[edge as usize].direction == Direction::Backward;
+        let on = |&edge: &EdgeNo| {
+            let backward = self.roads.network.edges[edge.index()].direction == Direction::Backward;
             Goal { edge, share: if backward { 1.0 - share } else { share } }
         };
         let end = shape[vertex as usize + 1].degrees();
@@ -177,7 +184,7 @@ impl Snapper {
     }
 
     /// The edges of a piece of road, given the first of them.
-    fn directions(&self, first: u32) -> Vec<u32> {
+    fn directions(&self, first: EdgeNo) -> Vec<EdgeNo> {
         let start = self.twins.partition_point(|twin| twin.0 < first);
         let twins = self.twins[start..].iter().take_while(|twin| twin.0 == first);
         std::iter::once(first).chain(twins.map(|twin| twin.1)).collect()

@@ -8,7 +8,7 @@ use super::driver::Driver;
 use super::permits::{Permit, Permits};
 use super::relative::{Peer, Standings};
 use super::roads::Roads;
-use crate::network::{Movements, Network};
+use crate::network::{EdgeNo, Movements, Network};
 use crate::osm::facts::Policy;
 use crate::rows::Standing;
 use crate::stet::{Model, ModelError};
@@ -32,7 +32,7 @@ impl Permits {
         let mut edges = vec![Permit::UNKNOWN; network.edges.len()];
         for row in database.query(&QueryOptions::new(vehicle, policy))? {
             let row = row?;
-            if let Some(slot) = edges.get_mut(row.edge.index as usize) {
+            if let Some(slot) = edges.get_mut(row.edge.index.index()) {
                 *slot = Permit::of(&row.certificate);
             }
         }
@@ -41,7 +41,7 @@ impl Permits {
             .into_iter()
             .map(|row| ((row.turn.from_edge, row.turn.to_edge), Permit::of(&row.certificate)))
             .collect();
-        let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
+        let id = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0, |edge| edge.id);
         let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);
         Ok(Self::new(settings, edges, movements, turn))
     }

@@ -2,7 +2,7 @@
 //!
 //! A route may begin and end on them, and drive within connected ones there. It may not pass through them from open road to open road.
 
-use crate::network::{Network, through};
+use crate::network::{EdgeNo, Network, through};
 use crate::vehicle::Vehicle;
 
 /// The edges that a vehicle may use at the ends of a route only. Empty if there are none.
@@ -21,12 +21,12 @@ impl EndsOnly {
     }
 
     /// Whether an edge is one of them.
-    pub(super) fn has(&self, edge: u32) -> bool {
-        self.0.get(edge as usize).copied().unwrap_or(false)
+    pub(super) fn has(&self, edge: EdgeNo) -> bool {
+        self.0.get(edge.index()).copied().unwrap_or(false)
     }
 
     /// Whether a step leads out of them: over these edges, the first one included.
-    pub(super) fn leads_out(&self, edges: impl IntoIterator<Item = u32>) -> bool {
+    pub(super) fn leads_out(&self, edges: impl IntoIterator<Item = EdgeNo>) -> bool {
         let mut inside = false;
         for edge in edges {
             let now = self.has(edge);
@@ -40,7 +40,7 @@ impl EndsOnly {
 
     /// The runs of these edges in the middle of a way, as ranges: those that neither begin it nor end it nor hold one of its `stops`
     /// (indices of edges at which it stops).
-    pub(super) fn passed(&self, edges: &[u32], stops: &[usize]) -> Vec<std::ops::Range<usize>> {
+    pub(super) fn passed(&self, edges: &[EdgeNo], stops: &[usize]) -> Vec<std::ops::Range<usize>> {
         let mut runs = Vec::new();
         let mut at = 0;
         while at < edges.len() {
@@ -66,14 +66,21 @@ mod tests {
     #[test]
     fn runs_in_the_middle_are_passed_through() {
         let ends_only = EndsOnly(vec![false, true, true, false, true]);
-        let passed = |edges: &[u32], stops: &[usize]| ends_only.passed(edges, stops);
+        let passed = |edges: &[u32], stops: &[usize]| {
+            let edges: Vec<EdgeNo> = edges.iter().copied().map(EdgeNo::new).collect();
+            ends_only.passed(&edges, stops)
+        };
         assert_eq!(passed(&[0, 1, 2, 3], &[]), [1..3]);
         assert_eq!(passed(&[0, 1, 2, 3], &[2]), []);
         assert_eq!(passed(&[0, 1, 2, 3], &[3]), [1..3]);
         assert_eq!(passed(&[1, 2, 0, 4], &[]), []);
         assert_eq!(passed(&[1, 0, 2, 3, 4, 0], &[]), [2..3, 4..5]);
         assert_eq!(passed(&[0, 3], &[]), []);
-        assert!(ends_only.leads_out([0, 1, 3]) && !ends_only.leads_out([0, 1, 2]) && !ends_only.leads_out([0, 3, 4]));
-        assert!(!EndsOnly::default().leads_out([1, 0]));
+        assert!(
+            ends_only.leads_out([0, 1, 3].map(EdgeNo::new))
+                && !ends_only.leads_out([0, 1, 2].map(EdgeNo::new))
+                && !ends_only.leads_out([0, 3, 4].map(EdgeNo::new))
+        );
+        assert!(!EndsOnly::default().leads_out([1, 0].map(EdgeNo::new)));
     }
 }

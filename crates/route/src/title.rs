@@ -1,13 +1,13 @@
 //! The titles and places of edges, turns and passages.
 
 use super::assemble::{PartKind, passes_over};
-use crate::network::{Network, PassageKind};
+use crate::network::{EdgeNo, Network, PassageKind};
 
 /// The title of an edge, turn or passage, such as `A87 Great Inland Highway`, `Main Street into High Street` or `Main Street over
 /// the roundabout into High Street`.
 #[must_use]
 pub fn title(network: &Network, at: PartKind) -> String {
-    let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| network.title(edge));
+    let of = |edge: EdgeNo| network.edges.get(edge.index()).map_or_else(String::new, |edge| network.title(edge));
     match at {
         PartKind::Edge(edge) => of(edge),
         PartKind::Turn { from, to } if passes_over(network, at) == Some(PassageKind::Roundabout) => {
@@ -24,7 +24,7 @@ pub fn place(network: &Network, at: PartKind) -> Option<[f64; 2]> {
         PartKind::Edge(edge) => (edge, false),
         PartKind::Turn { from, .. } => (from, true),
     };
-    let line: Vec<_> = network.positions(network.edges.get(edge as usize)?).collect();
+    let line: Vec<_> = network.positions(network.edges.get(edge.index())?).collect();
     let position = if last { line.last()? } else { line.get(line.len() / 2)? };
     let (lon, lat) = position.degrees();
     Some([lon, lat])

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::driver::Driver;
 use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
-use crate::network::Movement;
+use crate::network::{EdgeNo, Movement};
 use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{LengthClass, Planner, TurnCorridors, TurnEdges, TurnPath, turn_on};
 use crate::verdict::UnknownReason;
@@ -38,7 +38,7 @@ impl Turns for MadeTurns {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
         let options = &strokes.settings().stet;
@@ -60,7 +60,7 @@ impl Turns for MadeTurns {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
     ) -> Result<Option<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
         match self.best(&made, &strokes.settings().stet) {
@@ -74,7 +74,7 @@ impl Turns for MadeTurns {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
         code: i64,
     ) -> Result<Option<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
@@ -84,12 +84,17 @@ impl Turns for MadeTurns {
 }
 
 impl MadeTurns {
-    fn made(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Result<TurnCorridors, UnknownReason> {
+    fn made(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[EdgeNo],
+    ) -> Result<TurnCorridors, UnknownReason> {
         let reach = LengthClass::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let driven = [movement.from, movement.to].into_iter().chain(arcs.iter().copied());
         let lines: Vec<_> =
             driven.map(|edge| Ok((edge, strokes.line_of(edge)?))).collect::<Result<_, UnknownReason>>()?;
-        let line = |edge: u32| {
+        let line = |edge: EdgeNo| {
             let found = lines.iter().find(|(of, _)| *of == edge);
             found.map(|(_, line)| line.as_ref()).ok_or(UnknownReason::Geometry)
         };

@@ -11,7 +11,7 @@ use super::obstacles::Refutation;
 use super::pieces::{Choices, Menu, Strokes, TurnEnds, Turns};
 use super::roads::Roads;
 use crate::corridor::Corridor;
-use crate::network::offset_m;
+use crate::network::{EdgeNo, offset_m};
 use crate::osm::LonLat;
 use crate::stet::{self, Certificate, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -68,11 +68,11 @@ impl Whole {
 
     /// Goes on with roads on which these edges have other widths, and nodes at these positions other corners or surfaces. What lies
     /// beside them is made again.
-    pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<u32>, nodes: &[LonLat]) {
+    pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<EdgeNo>, nodes: &[LonLat]) {
         let network = &roads.network;
-        let stroke = |edge: u32| self.strokes.of(edge).map(|place| place.0);
+        let stroke = |edge: EdgeNo| self.strokes.of(edge).map(|place| place.0);
         let strokes: FxHashSet<u32> = edges.iter().filter_map(|&edge| stroke(edge)).collect();
-        let line = |edge: u32| network.edges.get(edge as usize).map(|edge| network.positions(edge));
+        let line = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.positions(edge));
         let along = edges.iter().copied().filter_map(line).flatten();
         let changed: Vec<LonLat> = along.chain(nodes.iter().copied()).collect();
         let near = |a: LonLat, b: LonLat| {
@@ -232,7 +232,7 @@ fn unassembled(error: AssemblyError, drive: &Drive) -> Refutation {
 
 fn first_turn(drive: &Drive) -> PartKind {
     let first = drive.joins().next().map(|join| PartKind::Turn { from: join.from, to: join.to });
-    first.unwrap_or(PartKind::Edge(drive.edges.first().copied().unwrap_or_default()))
+    first.unwrap_or(PartKind::Edge(drive.edges.first().copied().unwrap_or(EdgeNo::new(0))))
 }
 
 /// What to leave out when a whole route fails: the turn nearest to the failing place, or the edge at the place.
@@ -244,7 +244,7 @@ fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
         _ => sharpest(corridor),
     };
     let on = || path.parts.iter().find(|part| part.stations.contains(&at)).or(path.parts.first());
-    turn_near(path, at, TURN_REACH_M).or_else(|| on().map(|part| part.kind)).unwrap_or(PartKind::Edge(0))
+    turn_near(path, at, TURN_REACH_M).or_else(|| on().map(|part| part.kind)).unwrap_or(PartKind::Edge(EdgeNo::new(0)))
 }
 
 /// The turn that is nearest to a station, if it is within some metres.

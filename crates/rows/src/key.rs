@@ -5,13 +5,13 @@ use std::borrow::Cow;
 use crate::osm::StringId;
 use crate::osm::facts::{Direction, highway};
 use crate::words::Named as _;
-use netcert_roads::network::{Network, Road};
+use netcert_roads::network::{EdgeNo, Network, Road};
 
 /// Which edge is meant: its ids, and its place on its way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EdgeKey {
-    /// Index into `Network::edges`.
-    pub index: u32,
+    /// Its place in `Network::edges`.
+    pub index: EdgeNo,
     /// The stable id, `edge_id`.
     pub id: i64,
     /// The way in OpenStreetMap.
@@ -27,8 +27,8 @@ pub struct EdgeKey {
 impl EdgeKey {
     /// The key of an edge of a network. `None` if there is no such edge.
     #[must_use]
-    pub fn of(network: &Network, index: u32) -> Option<Self> {
-        let edge = network.edges.get(index as usize)?;
+    pub fn of(network: &Network, index: EdgeNo) -> Option<Self> {
+        let edge = network.edges.get(index.index())?;
         let way_id = network.road(edge).way_id;
         let (from_node, to_node, direction) = (edge.from_node, edge.to_node, edge.direction);
         Some(Self { index, id: edge.id, way_id, from_node, to_node, direction })

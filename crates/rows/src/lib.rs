@@ -35,6 +35,7 @@ pub use key::{EdgeKey, RoadName, TurnKey};
 pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, TurnCertificate, TurnMade, TurnNeed};
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;
+pub use netcert_roads::network::EdgeNo;
 pub use plan::StoredPlan;
 pub use plan::unpack;
 pub use relative::{Relative, Standing};

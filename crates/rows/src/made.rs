@@ -4,14 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::verdict::{UnknownReason, Verdict};
 use netcert_base::corridor::Side;
+use netcert_roads::network::EdgeNo;
 
 use super::plan::StoredPlan;
 
 /// The certificate of one edge, for a vehicle and policy that the caller knows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EdgeCertificate {
-    /// Index into `Network::edges`.
-    pub edge: u32,
+    /// The edge.
+    pub edge: EdgeNo,
     /// The verdict and the numbers.
     pub conclusion: Conclusion,
     /// The least width of the strip with which an edge without enough room would be safe, if its stroke were nowhere narrower, metres.
@@ -30,7 +31,7 @@ pub struct Conclusion {
 impl EdgeCertificate {
     /// A certificate without numbers.
     #[must_use]
-    pub fn bare(edge: u32, verdict: Verdict) -> Self {
+    pub fn bare(edge: EdgeNo, verdict: Verdict) -> Self {
         Self { edge, conclusion: Conclusion::bare(verdict), need_width_m: None }
     }
 }
@@ -111,7 +112,7 @@ pub struct StrokeMade {
     /// Index into `Network::strokes`.
     pub stroke: u32,
     /// The stroke's edges, each with its measures, and why it has no corridor.
-    pub edges: Vec<(u32, EdgeMeasure, Option<UnknownReason>)>,
+    pub edges: Vec<(EdgeNo, EdgeMeasure, Option<UnknownReason>)>,
     /// One certificate for every vehicle and edge.
     pub certificates: Vec<(u32, EdgeCertificate)>,
     /// Plans that differ from the centreline.

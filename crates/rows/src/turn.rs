@@ -4,6 +4,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::verdict::Verdict;
 use crate::words::Named as _;
+use netcert_roads::network::EdgeNo;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
@@ -110,11 +111,11 @@ impl TurnRow {
 pub struct TurnStep {
     /// Index into the network's turns.
     pub turn: u32,
-    /// Index into `Network::edges`.
-    pub from: u32,
-    pub to: u32,
-    /// The first and last edge between (indices into `Network::edges`), if the turn is a passage.
-    pub arcs: Option<[u32; 2]>,
+    /// The edge before the turn.
+    pub from: EdgeNo,
+    pub to: EdgeNo,
+    /// The first and last edge between, if the turn is a passage.
+    pub arcs: Option<[EdgeNo; 2]>,
     pub via_node: i64,
     pub angle_deg: f64,
     pub verdict: Verdict,

@@ -180,7 +180,7 @@ impl PlannerThread {
         let network = &self.roads.network;
         let beside =
             planner.beside(place, nearest.map_or(MOST_BESIDE_M, |(_, distance_m)| distance_m.min(MOST_BESIDE_M)));
-        let known = beside.and_then(|beside| Some((beside, network.edges.get(beside.edge as usize)?)));
+        let known = beside.and_then(|beside| Some((beside, network.edges.get(beside.edge.index())?)));
         let mut detail = error.to_string();
         let beside = known.map(|(beside, edge)| {
             let ((verdict, reason), title) = (verdict_words(beside.permit.verdict), network.title(edge));

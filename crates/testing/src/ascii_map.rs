@@ -3,7 +3,7 @@
 //! Every letter or digit is a node whose id is its character code; everything else is decoration. A column is `metres`
 //! wide and a row equally high; north is up. Ways are named by their nodes in order and tagged as in OpenStreetMap.
 
-use netcert::network::{Edge, Network, NetworkAccount, build};
+use netcert::network::{Edge, EdgeNo, Network, NetworkAccount, build};
 use netcert::osm::facts::{self, CrossSection, Jurisdiction, PointFacts, WayFacts};
 use netcert::osm::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
 
@@ -191,9 +191,9 @@ pub fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
 }
 
 /// The edge from one drawn node to another, `AB`.
-pub fn edge(network: &Network, ends: &str) -> u32 {
+pub fn edge(network: &Network, ends: &str) -> EdgeNo {
     let ends: Vec<i64> = ends.chars().map(id_of).collect();
-    let found = (0..).zip(&network.edges).find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
+    let found = network.numbered_edges().find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
     found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
 }
 
@@ -217,7 +217,7 @@ fn ends(edge: &Edge) -> String {
 pub fn strokes(network: &Network) -> String {
     let nodes = |range: std::ops::Range<u32>| {
         let edges = network.stroke_edges[range.start as usize..range.end as usize].iter();
-        let ends: Vec<String> = edges.map(|&e| ends(&network.edges[e as usize])).collect();
+        let ends: Vec<String> = edges.map(|&e| ends(&network.edges[e.index()])).collect();
         let first = ends.first().map_or("", |e| &e[..1]).to_owned();
         first + ends.iter().map(|e| &e[1..]).collect::<String>().as_str()
     };

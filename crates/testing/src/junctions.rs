@@ -3,7 +3,7 @@
 
 use netcert::account::AccountRow;
 use netcert::certify::{TurnJob, best_of, certify_turns};
-use netcert::network::{Network, build};
+use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::facts::{Countries, Jurisdiction, Policy, TrafficSide, cross_sections};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
@@ -40,8 +40,8 @@ impl Drawn {
     /// The turn with the nodes that it passes: `EBC` from E over B to C.
     pub fn turn(&self, nodes: &str) -> TurnFacts {
         let ids: Vec<i64> = nodes.chars().map(id_of).collect();
-        let is = |edge: u32, from: i64, to: i64| {
-            let edge = &self.network.edges[edge as usize];
+        let is = |edge: EdgeNo, from: i64, to: i64| {
+            let edge = &self.network.edges[edge.index()];
             (edge.from_node, edge.to_node) == (from, to)
         };
         let fits = |t: &TurnFacts| is(t.movement.from, ids[0], ids[1]) && is(t.movement.to, ids[1], ids[2]);
@@ -56,7 +56,7 @@ impl Drawn {
     /// The passage from the end of one arm to the end of another: `WE`.
     pub fn passage(&self, ends: &str) -> TurnFacts {
         let ids: Vec<i64> = ends.chars().map(id_of).collect();
-        let edge = |edge: u32| &self.network.edges[edge as usize];
+        let edge = |edge: EdgeNo| &self.network.edges[edge.index()];
         let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
         self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))
     }

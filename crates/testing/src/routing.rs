@@ -92,7 +92,7 @@ impl Region {
         let mut edges = vec![Permit::UNKNOWN; self.network.edges.len()];
         certify_network(&job, &Silent, |_, certificate| {
             let rsc_m = certificate.conclusion.measured.map(|measured| measured.rsc_m);
-            edges[certificate.edge as usize] = Permit { verdict: certificate.conclusion.verdict, rsc_m };
+            edges[certificate.edge.index()] = Permit { verdict: certificate.conclusion.verdict, rsc_m };
             Ok::<(), ()>(())
         })
         .unwrap();

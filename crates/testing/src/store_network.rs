@@ -3,7 +3,7 @@
 
 use std::num::NonZeroU8;
 
-use netcert::network::{Area, Areas, Edge, Narrowing, Network, Restriction, Road, Stroke};
+use netcert::network::{Area, Areas, Edge, EdgeNo, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{
     AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, RuleSet, Strip,
@@ -95,10 +95,10 @@ fn add_way(network: &mut Network, way: u32) {
 
 /// Strokes of three edges, each with the last edge of the previous stroke as its approach.
 fn add_strokes(network: &mut Network) {
-    let edges: Vec<u32> = (0..network.edges.len() as u32).collect();
+    let edges: Vec<EdgeNo> = EdgeNo::first(network.edges.len()).collect();
     for (no, chain) in edges.chunks(3).enumerate() {
         let start = network.stroke_edges.len() as u32;
-        network.stroke_edges.extend(chain[0].checked_sub(1));
+        network.stroke_edges.extend(chain[0].get().checked_sub(1).map(EdgeNo::new));
         let first = network.stroke_edges.len() as u32;
         network.stroke_edges.extend(chain.iter().rev());
         let end = network.stroke_edges.len() as u32;
@@ -111,7 +111,7 @@ fn add_restrictions(network: &mut Network) {
     let turns = ["left_turn", "right_turn", "straight_on", "u_turn", "entry", "exit"];
     for no in 0..network.edges.len() as u32 / 7 {
         let start = network.restriction_edges.len() as u32;
-        network.restriction_edges.extend((no * 7..).take(2 + no as usize % 3));
+        network.restriction_edges.extend((no * 7..).map(EdgeNo::new).take(2 + no as usize % 3));
         let kind = format!("{}_{}", if no.is_multiple_of(4) { "only" } else { "no" }, turns[no as usize % 6]);
         network.restrictions.push(Restriction {
             relation_id: 3_000_000_000 + i64::from(no / 2),
@@ -181,5 +181,5 @@ pub fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
     };
     let measured = (!matches!(verdict, Verdict::Unknown(_))).then_some(measured);
     let need_width_m = (verdict == Verdict::Unsafe(UnsafeReason::Width)).then(|| 3.0 + f64::from(k % 40) / 20.0);
-    EdgeCertificate { edge, conclusion: Conclusion { verdict, measured }, need_width_m }
+    EdgeCertificate { edge: EdgeNo::new(edge), conclusion: Conclusion { verdict, measured }, need_width_m }
 }

@@ -13,7 +13,7 @@ pub(super) fn check(database: &mut Database, network: &Network) -> Result<Vec<Co
     let mut complaints = Vec::new();
     for facts in database.all_edge_facts()? {
         let facts = facts?;
-        let detail = match network.edges.get(facts.edge.index as usize) {
+        let detail = match network.edges.get(facts.edge.index.index()) {
             Some(edge) => wrong(network, edge, &facts).map(|column| format!("{column}: not what its road says")),
             None => Some("its road is not there".to_owned()),
         };

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use crate::check::{Finding, Outcome, SetClaim, SetReport, TurnsClaim};
 use crate::evidence::Entry;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, EdgeRow, TurnRow};
 use crate::settings::Settings;
@@ -248,7 +248,7 @@ impl Request {
             QueryOptions { area: self.area.map(Area::Bounds), ..QueryOptions::new(&set.vehicle_id, set.policy) };
         let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
         let rows = self.sampled(rows, |row| row.edge.id);
-        let rows: BTreeMap<u32, EdgeRow> = rows.into_iter().map(|row| (row.edge.index, row)).collect();
+        let rows: BTreeMap<EdgeNo, EdgeRow> = rows.into_iter().map(|row| (row.edge.index, row)).collect();
         let plans = database.plans(&set.vehicle_id, set.policy)?;
         let claim = SetClaim {
             network,
@@ -274,7 +274,7 @@ impl Request {
         let vehicle = defined(database, set)?;
         let params = settings.turn_params();
         let every = QueryOptions::new(&set.vehicle_id, set.policy);
-        let edges: BTreeMap<u32, Verdict> = database
+        let edges: BTreeMap<EdgeNo, Verdict> = database
             .query(&every)?
             .map(|row| row.map(|row| (row.edge.index, row.certificate.verdict)))
             .collect::<Result<_, _>>()?;

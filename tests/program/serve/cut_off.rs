@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use netcert::corridor::stroke_corridor;
 use netcert::explain::{explain_edge, explain_turn};
-use netcert::network::{Movement, Network};
+use netcert::network::{EdgeNo, Movement, Network};
 use netcert::osm::facts::Policy;
 use netcert::route::{
     self, Driver, MadeTurns, Measure, Planner, Position, Question, Roads, Speeds, Strokes, TurnPiece, Turns, Unanswered,
@@ -35,7 +35,7 @@ impl Turns for Telling {
         &self,
         strokes: &mut Strokes,
         movement: &Movement,
-        arcs: &[u32],
+        arcs: &[EdgeNo],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         self.asked.fetch_add(1, Ordering::Relaxed);
         self.stop.tell();
@@ -193,7 +193,7 @@ fn an_explanation_that_is_told_to_stop_has_no_result() {
     let (_place, _, network, model, settings) = wide();
     let (told, other) = (Stop::default(), Stop::default());
     told.tell();
-    let explained = |stop: &Stop| explain_edge(&network, 0, &model, &settings, stop).map(|e| e.is_some());
+    let explained = |stop: &Stop| explain_edge(&network, EdgeNo::new(0), &model, &settings, stop).map(|e| e.is_some());
     assert_eq!((explained(&told), explained(&other)), (Err(Stopped), Ok(true)));
     let turn = turn_facts(&network, &settings.kerbs).remove(0);
     let explained = |stop: &Stop| explain_turn(&network, &turn, &model, &settings, stop).map(|e| e.title());

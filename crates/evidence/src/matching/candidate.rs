@@ -7,6 +7,7 @@ use super::directed;
 use super::index::{Index, RoadPiece};
 use super::names::Fit;
 use super::track::{Track, turn_deg};
+use crate::network::EdgeNo;
 use crate::osm::LonLat;
 use crate::row::Along;
 
@@ -43,7 +44,7 @@ pub(super) struct Candidate<'i> {
     pub(super) piece: &'i RoadPiece,
     pub(super) name: Fit,
     /// The edges that would be meant; at least one.
-    pub(super) edges: Vec<u32>,
+    pub(super) edges: Vec<EdgeNo>,
     /// Sorted along the line; at least one.
     pub(super) samples: Vec<Sample>,
     /// Share of the piece's length that the line covers.

@@ -8,13 +8,13 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::network::{EARTH_RADIUS_M, Edge, Network, Road, offset_m};
+use crate::network::{EARTH_RADIUS_M, Edge, EdgeNo, Network, Road, offset_m};
 use crate::osm::LonLat;
 
 /// A piece of road: what lies between two nodes of a way, in both directions.
 pub(super) struct RoadPiece {
     /// Its edges along the way and against it; at least one.
-    pub(super) edges: [Option<u32>; 2],
+    pub(super) edges: [Option<EdgeNo>; 2],
     /// Its nodes in the order of the way.
     pub(super) ends: [i64; 2],
     road: u32,
@@ -38,7 +38,7 @@ pub(super) struct Index<'n> {
     pub(super) pieces: Vec<RoadPiece>,
     segments: RTree<Segment>,
     junctions: RTree<Junction>,
-    edges: FxHashMap<i64, u32>,
+    edges: FxHashMap<i64, EdgeNo>,
     nodes: FxHashMap<i64, Node>,
 }
 
@@ -67,15 +67,15 @@ impl<'n> Index<'n> {
             .map(|(&id, node)| GeomWithData::new(corner(node.at), id))
             .collect();
         junctions.sort_unstable_by_key(|junction| junction.data);
-        let edges = (0_u32..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
+        let edges = network.numbered_edges().map(|(index, edge)| (edge.id, index)).collect();
         let (segments, junctions) = (RTree::bulk_load(segments), RTree::bulk_load(junctions));
         Self { network, pieces, segments, junctions, edges, nodes }
     }
 
     /// The edge of an id.
-    pub(super) fn edge(&self, id: i64) -> Option<(u32, &'n Edge)> {
+    pub(super) fn edge(&self, id: i64) -> Option<(EdgeNo, &'n Edge)> {
         let index = *self.edges.get(&id)?;
-        Some((index, self.network.edges.get(index as usize)?))
+        Some((index, self.network.edges.get(index.index())?))
     }
 
     /// The pieces of a way, in its order.
@@ -136,7 +136,7 @@ impl<'n> Index<'n> {
     /// A piece for messages: `way 12 (edges 34, 56)`.
     pub(super) fn told(&self, piece: &RoadPiece) -> String {
         let ids: Vec<String> =
-            piece.edges.iter().flatten().map(|&edge| self.network.edges[edge as usize].id.to_string()).collect();
+            piece.edges.iter().flatten().map(|&edge| self.network.edges[edge.index()].id.to_string()).collect();
         let word = if ids.len() == 1 { "edge" } else { "edges" };
         format!("way {} ({word} {})", self.road(piece).way_id, ids.join(", "))
     }
@@ -144,7 +144,7 @@ impl<'n> Index<'n> {
 
 /// The nodes at which strokes begin or end. Where only two roads meet, such a node is a sharp bend.
 fn stroke_ends(network: &Network) -> FxHashSet<i64> {
-    let edge = |index: &u32| network.edges.get(*index as usize);
+    let edge = |index: &EdgeNo| network.edges.get(index.index());
     let open = network.strokes.iter().filter(|stroke| !stroke.closed);
     let edges = open.map(|stroke| &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize]);
     let ends = edges.flat_map(|edges| {
@@ -155,9 +155,9 @@ fn stroke_ends(network: &Network) -> FxHashSet<i64> {
 
 /// Groups the directions of each stretch. They are neighbours in the network.
 fn pieces(network: &Network) -> Vec<RoadPiece> {
-    let same = |a: &(u32, &Edge), b: &(u32, &Edge)| a.1.road == b.1.road && a.1.shape == b.1.shape;
-    let edges: Vec<(u32, &Edge)> = (0..).zip(&network.edges).collect();
-    let piece = |group: &[(u32, &Edge)]| {
+    let same = |a: &(EdgeNo, &Edge), b: &(EdgeNo, &Edge)| a.1.road == b.1.road && a.1.shape == b.1.shape;
+    let edges: Vec<(EdgeNo, &Edge)> = network.numbered_edges().collect();
+    let piece = |group: &[(EdgeNo, &Edge)]| {
         let (_, edge) = group[0];
         let mut edges = [None; 2];
         for &(index, edge) in group {

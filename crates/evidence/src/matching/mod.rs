@@ -16,20 +16,20 @@ mod track;
 use rayon::prelude::*;
 
 use super::row::{Along, Place, Row};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use index::Index;
 
 /// What a row means.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Match {
     /// Edges, as sorted indices into [`Network::edges`]; at least one.
-    Edges(Vec<u32>),
+    Edges(Vec<EdgeNo>),
     /// A junction, or one corner of it.
     Corner {
         /// OSM node id.
         node: i64,
         /// The edge that ends and the edge that begins at the corner: indices into [`Network::edges`].
-        edges: Option<[u32; 2]>,
+        edges: Option<[EdgeNo; 2]>,
     },
     /// The surface of these junctions: OSM node ids, sorted, at least one.
     Area(Vec<i64>),
@@ -74,7 +74,7 @@ fn listed(told: &[String], or: &str) -> String {
 }
 
 /// Which of the edges `[forward, backward]` of a piece are meant.
-fn directed(edges: [Option<u32>; 2], along: Along) -> Vec<u32> {
+fn directed(edges: [Option<EdgeNo>; 2], along: Along) -> Vec<EdgeNo> {
     let [forward, backward] = edges;
     match along {
         Along::Both => forward.into_iter().chain(backward).collect(),

@@ -3,7 +3,7 @@
 use super::index::{Index, RoadPiece};
 use super::track::Track;
 use super::{Found, Match, directed, unmatched};
-use crate::network::offset_m;
+use crate::network::{EdgeNo, offset_m};
 use crate::osm::LonLat;
 use crate::row::Row;
 use crate::words::Named as _;
@@ -32,8 +32,8 @@ pub(super) fn edge(index: &Index<'_>, row: &Row, id: i64) -> Found {
 /// The edges that a way has today, for messages.
 fn edges_of(index: &Index<'_>, way_id: i64) -> String {
     let edges = index.of_way(way_id).iter().flat_map(|piece| piece.edges).flatten();
-    let told = |edge: u32| {
-        let edge = &index.network.edges[edge as usize];
+    let told = |edge: EdgeNo| {
+        let edge = &index.network.edges[edge.index()];
         format!("{} (node {} to {})", edge.id, edge.from_node, edge.to_node)
     };
     let edges: Vec<String> = edges.map(told).collect();
@@ -53,7 +53,7 @@ pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[i64;
         Some(nodes) => between(all, nodes).map_err(|why| Match::Unmatched(format!("way {way_id}: {why}")))?,
         None => all.iter().collect(),
     };
-    let mut edges: Vec<u32> = part.iter().flat_map(|piece| directed(piece.edges, row.along)).collect();
+    let mut edges: Vec<EdgeNo> = part.iter().flat_map(|piece| directed(piece.edges, row.along)).collect();
     edges.sort_unstable();
     if edges.is_empty() {
         return unmatched(format!("way {way_id} is one-way and has no edge {}", row.along.name()));
@@ -107,7 +107,7 @@ pub(super) fn junction(index: &Index<'_>, row: &Row, node: i64, edges: Option<[i
 /// The edges at a node, for messages.
 fn edges_at(index: &Index<'_>, node: i64) -> String {
     let ids = |ends: bool| {
-        let at = index.network.crossings.at(node).iter().map(|&edge| &index.network.edges[edge as usize]);
+        let at = index.network.crossings.at(node).iter().map(|&edge| &index.network.edges[edge.index()]);
         let at = at.filter(|edge| if ends { edge.to_node == node } else { edge.from_node == node });
         at.map(|edge| edge.id.to_string()).collect::<Vec<_>>().join(", ")
     };

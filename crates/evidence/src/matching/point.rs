@@ -6,7 +6,7 @@ use super::names::{Fit, RowName, told};
 use super::rivals::could_be_meant;
 use super::track::Track;
 use super::{Found, Match, directed, listed, unmatched};
-use crate::network::offset_m;
+use crate::network::{EdgeNo, offset_m};
 use crate::osm::LonLat;
 use crate::row::{Quantity, Row};
 
@@ -22,7 +22,7 @@ pub(super) fn matched(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
 struct Near<'i> {
     piece: &'i RoadPiece,
     distance_m: f64,
-    edges: Vec<u32>,
+    edges: Vec<EdgeNo>,
     name: Fit,
 }
 

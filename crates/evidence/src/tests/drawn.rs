@@ -1,7 +1,7 @@
 //! Drawn networks: nodes at metres east and north of a place, ways through them, and rows of evidence on them.
 
 use super::super::{Along, Match, Place, Quantity, Row, Value, match_rows};
-use crate::network::{Network, build};
+use crate::network::{EdgeNo, Network, build};
 use crate::osm::facts::{CrossSection, Jurisdiction, way_facts};
 use crate::osm::{Extract, LonLat, NodeTable, Way};
 
@@ -117,8 +117,8 @@ pub(super) fn matched(network: &Network, row: &Row) -> Match {
 
 /// A match as text: edges by way and nodes, in order, or the words of a refusal.
 pub(super) fn told(network: &Network, row: &Row) -> String {
-    let edge = |&index: &u32| {
-        let edge = &network.edges[index as usize];
+    let edge = |&index: &EdgeNo| {
+        let edge = &network.edges[index.index()];
         format!("{}:{}-{}", network.road(edge).way_id, edge.from_node, edge.to_node)
     };
     match matched(network, row) {

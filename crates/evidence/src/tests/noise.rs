@@ -108,7 +108,7 @@ fn of_a_thousand_rows_with_noise_none_is_matched_wrongly() {
         let count = counts.entry(kind).or_default();
         count[0] += 1;
         let Match::Edges(edges) = found else { continue };
-        let mut ways: Vec<i64> = edges.iter().map(|&edge| network.road(&network.edges[edge as usize]).way_id).collect();
+        let mut ways: Vec<i64> = edges.iter().map(|&edge| network.road(&network.edges[edge.index()]).way_id).collect();
         assert_eq!(edges.len() % 2, 0, "both directions");
         ways.dedup();
         assert!(ways.iter().all(|way| truth.contains(way)), "{kind}: {ways:?} for {truth:?}: {:?}", row.place);
@@ -130,7 +130,7 @@ fn of_a_thousand_points_with_noise_none_is_matched_wrongly() {
         let (place, noise) = (place(group, road, along_m), random.normal(3.0));
         let row = super::drawn::point([place[0] + noise[0], place[1] + noise[1]]);
         let Match::Edges(edges) = super::drawn::matched(&network, &row) else { continue };
-        let way = network.road(&network.edges[edges[0] as usize]).way_id;
+        let way = network.road(&network.edges[edges[0].index()]).way_id;
         assert_eq!(way, way_id(group, road, (along_m / PIECE_M) as usize), "{place:?} {noise:?}");
         matched += 1;
     }

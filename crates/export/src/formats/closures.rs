@@ -8,6 +8,7 @@ use std::io::{self, Write};
 
 use super::geojson::position;
 use crate::osm::LonLat;
+use crate::rows::EdgeNo;
 use crate::{ExportError, Source};
 
 /// Half the rectangle's size across the road, metres. Engines move lines by half a metre when they simplify them (GraphHopper:
@@ -58,7 +59,7 @@ pub(super) fn each(
     };
     let stopped = source.stopped()?;
     let mut database = source.database()?;
-    for (index, edge) in (0_u32..).zip(source.edges(&mut database)?) {
+    for (index, edge) in EdgeNo::all().zip(source.edges(&mut database)?) {
         let edge = edge?;
         let permitted = edge.refusal.is_none();
         let refused = !permitted || stopped.contains(&index);

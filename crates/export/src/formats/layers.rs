@@ -64,7 +64,8 @@ impl Layer {
                     let edge = edge?;
                     let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
                     let own = Standing::of(&edge.row.certificate);
-                    let relative = beside.as_mut().map(|other| other.relative(edge.row.edge.index, own)).transpose()?;
+                    let relative =
+                        beside.as_mut().map(|other| other.relative(edge.row.edge.index.get(), own)).transpose()?;
                     let cells = with_relative(&edge_cells(source, &edge, &refusal), relative);
                     put(&Row { id: edge.row.edge.id, cells: &cells, line: &edge.row.line })?;
                 }

@@ -15,6 +15,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
 use crate::osm::pbf::copy::Contents;
+use crate::rows::EdgeNo;
 use crate::scratch::Scratch;
 use crate::ways::{OnWay, WayEdges, WayStretch, check_ids, ids};
 use crate::{Destination, ExportError, Layout, Sink, Source};
@@ -68,7 +69,7 @@ struct Tables<'s, 'r> {
     turns: Sink,
     ends: Ends,
     /// Edges whose last segment is closed, because the only way on is refused.
-    stopped: FxHashSet<u32>,
+    stopped: FxHashSet<EdgeNo>,
     unclear: u64,
 }
 
@@ -119,7 +120,7 @@ impl Tables<'_, '_> {
             let &WayStretch { first, last, edges, .. } = stretch;
             self.close(refs, done, first, [true; 2])?;
             done = last;
-            let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
+            let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge.index())));
             self.close(refs, first, last, permitted.map(|yes| !yes))?;
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
             // The nearest different node at each end, because adjacent repetitions of a node count as one.
@@ -181,7 +182,7 @@ impl Tables<'_, '_> {
         Ok(())
     }
 
-    fn refuse(&mut self, from: u32, to: u32) -> Result<(), ExportError> {
+    fn refuse(&mut self, from: EdgeNo, to: EdgeNo) -> Result<(), ExportError> {
         let ([_, before, via], [after, _, end]) = (self.ends.get(from)?, self.ends.get(to)?);
         let closed = self.stopped.contains(&from) || (self.stopped.contains(&to) && after == end);
         if before == 0 || after == 0 || closed {
@@ -206,18 +207,18 @@ impl Ends {
     }
 
     /// Adds an edge. Edges must come in order.
-    fn push(&mut self, edge: u32, nodes: [i64; 3]) -> Result<(), ExportError> {
-        for _ in self.edges..edge {
+    fn push(&mut self, edge: EdgeNo, nodes: [i64; 3]) -> Result<(), ExportError> {
+        for _ in self.edges..edge.get() {
             self.file.write_all(&[0; ENDS_BYTES])?;
         }
-        self.edges = edge.saturating_add(1);
+        self.edges = edge.get().saturating_add(1);
         nodes.iter().try_for_each(|node| self.file.write_all(&node.to_le_bytes()))?;
         Ok(())
     }
 
-    fn get(&mut self, edge: u32) -> Result<[i64; 3], ExportError> {
+    fn get(&mut self, edge: EdgeNo) -> Result<[i64; 3], ExportError> {
         let (mut bytes, mut nodes) = ([0; ENDS_BYTES], [0; 3]);
-        if edge < self.edges {
+        if edge.get() < self.edges {
             self.file.read_at(u64::from(edge) * ENDS_BYTES as u64, &mut bytes)?;
         }
         nodes.iter_mut().zip(bytes.as_chunks().0).for_each(|(node, word)| *node = i64::from_le_bytes(*word));

@@ -17,6 +17,7 @@ use rustc_hash::FxHashSet;
 use super::{Options, Target};
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
+use crate::rows::EdgeNo;
 use crate::rows::Rings;
 use crate::words::Named;
 use crate::{Destination, ExportEdge, ExportError, Layout, Refusal, Sink, Source};
@@ -108,7 +109,7 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     let permitted = &source.permitted;
     let mut database = source.database()?;
     let rings = Rings::new(database.rings()?);
-    let first_steps = |sequences: Vec<Vec<u32>>| -> FxHashSet<[u32; 2]> {
+    let first_steps = |sequences: Vec<Vec<EdgeNo>>| -> FxHashSet<[EdgeNo; 2]> {
         sequences.iter().filter_map(|edges| edges.first_chunk().copied()).collect()
     };
     // A restriction may lead over a passage's arcs, which need no permit. A refused passage does not close other passages.
@@ -116,8 +117,8 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     banned.extend(&by_law);
     for pair in source.told(database.straight_on()?) {
         if let (from, Some(to)) = pair?
-            && permitted.edges.get(from)
-            && permitted.edges.get(to)
+            && permitted.edges.get(from.index())
+            && permitted.edges.get(to.index())
             && !banned.contains(&[from, to])
         {
             step_line(&mut out, [from, to], &[])?;
@@ -125,7 +126,7 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     }
     for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
         let step = step?;
-        if !permitted.turns.get(step.turn) || banned.contains(&[step.from, step.to]) {
+        if !permitted.turns.get(step.turn as usize) || banned.contains(&[step.from, step.to]) {
             continue;
         }
         match step.arcs.map(|arcs| rings.through(arcs)) {
@@ -139,15 +140,15 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     out.close()
 }
 
-fn path(out: &mut dyn Write, edges: &[u32]) -> io::Result<()> {
+fn path(out: &mut dyn Write, edges: &[EdgeNo]) -> io::Result<()> {
     writeln!(out, "{}", array(edges))
 }
 
-fn step_line(out: &mut dyn Write, [from, to]: [u32; 2], arcs: &[u32]) -> io::Result<()> {
+fn step_line(out: &mut dyn Write, [from, to]: [EdgeNo; 2], arcs: &[EdgeNo]) -> io::Result<()> {
     writeln!(out, "{}\t{}\t{}", u64::from(from) + 1, u64::from(to) + 1, array(arcs))
 }
 
-fn array(edges: &[u32]) -> String {
+fn array(edges: &[EdgeNo]) -> String {
     let ids: Vec<String> = edges.iter().map(|&edge| (u64::from(edge) + 1).to_string()).collect();
     format!("{{{}}}", ids.join(","))
 }
@@ -195,6 +196,6 @@ mod tests {
 
     #[test]
     fn ids_are_rows_of_the_edge_table() {
-        assert_eq!((array(&[0, 41]), array(&[])), ("{1,42}".to_owned(), "{}".to_owned()));
+        assert_eq!((array(&[0, 41].map(EdgeNo::new)), array(&[])), ("{1,42}".to_owned(), "{}".to_owned()));
     }
 }

@@ -16,7 +16,7 @@ use super::error::RunError;
 use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::Touched;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::store::{Database, Register, Renewal, Run, StoreError};
@@ -239,7 +239,7 @@ fn mapped_corners(network: &Network, turns: &[TurnFacts], added: &[Entry]) -> Ve
     let corners = added.iter().filter(|entry| entry.row.quantity == Quantity::KerbRadius);
     let conflict = |entry: &Entry| {
         let mapped_at = |node: i64| {
-            let at = |edge: u32| network.edges.get(edge as usize);
+            let at = |edge: EdgeNo| network.edges.get(edge.index());
             let there = turns.iter().filter(|turn| {
                 let via = at(turn.movement.from).map(|edge| edge.to_node);
                 turn.through.is_empty() && via == Some(node) && turn.kerb_source.is_some()

@@ -5,7 +5,7 @@ use super::merge::{Jog, Relaid, Split};
 use super::polyline::Polyline;
 use super::profile::Across;
 use super::taper::Ramp;
-use crate::network::{Edge, Splits};
+use crate::network::{Edge, EdgeNo, Splits};
 
 /// Length driven after the counted turn, metres. It exceeds any catalogued vehicle, so the last unit leaves the turn
 /// too.
@@ -17,7 +17,7 @@ const MOST_TURNS: usize = 12;
 
 /// An edge of the chain: its place in the frame, and its widths.
 pub(super) struct Link<'n> {
-    pub(super) index: u32,
+    pub(super) index: EdgeNo,
     pub(super) edge: &'n Edge,
     /// The positions that are driven, in direction of travel.
     pub(super) points: &'n [[f64; 2]],

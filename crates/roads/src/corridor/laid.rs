@@ -10,7 +10,7 @@ use super::polyline::Polyline;
 use super::profile::Across;
 use super::smooth::{Smoothed, Smoothing, smooth};
 use super::taper::guideline_ratio;
-use crate::network::{Edge, Network, Stroke, length_m, offset_m};
+use crate::network::{Edge, EdgeNo, Network, Stroke, length_m, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
@@ -37,7 +37,7 @@ pub struct LaidOut<'n> {
 
 /// An edge in the frame.
 struct Laid<'n> {
-    index: u32,
+    index: EdgeNo,
     edge: &'n Edge,
     points: Vec<[f64; 2]>,
     /// How many positions of the edge lie before `points`.
@@ -58,12 +58,12 @@ impl<'n> LaidOut<'n> {
         // A loop is its own approach.
         let approach = if stroke.closed { &[] } else { approach };
         let (approach, skipped) = lead_in(network, approach, params.lead_in_m);
-        let chain: Vec<u32> = approach.iter().chain(own).copied().collect();
+        let chain: Vec<EdgeNo> = approach.iter().chain(own).copied().collect();
         let mut positions: Vec<LonLat> = Vec::new();
         let mut ends = Vec::with_capacity(chain.len());
         for (place, &index) in chain.iter().enumerate() {
             let skipped = if place == 0 { skipped } else { 0 };
-            positions.extend(network.positions(&network.edges[index as usize]).skip(skipped));
+            positions.extend(network.positions(&network.edges[index.index()]).skip(skipped));
             ends.push(positions.len());
         }
         if length_m(positions.iter().copied()) > MOST_LENGTH_M {
@@ -78,7 +78,7 @@ impl<'n> LaidOut<'n> {
             .map(|(&index, end)| {
                 let (points, skipped) = (metric[start..end].to_vec(), if start == 0 { skipped } else { 0 });
                 start = end;
-                Laid { index, edge: &network.edges[index as usize], points, skipped }
+                Laid { index, edge: &network.edges[index.index()], points, skipped }
             })
             .collect();
         let (closed, approach) = (stroke.closed, approach.len());
@@ -120,16 +120,16 @@ impl<'n> LaidOut<'n> {
 
 /// The part of an approach that is driven, and how many positions of its first edge lie before it. It begins at the position nearest to the
 /// stroke from which it is long enough. What lies before it, and may lie beyond the end of a file, has no influence.
-fn lead_in<'n>(network: &Network, approach: &'n [u32], least_m: f64) -> (&'n [u32], usize) {
+fn lead_in<'n>(network: &Network, approach: &'n [EdgeNo], least_m: f64) -> (&'n [EdgeNo], usize) {
     let mut length_m = 0.0;
     for (place, &index) in approach.iter().enumerate().rev() {
         let mut after: Option<LonLat> = None;
-        for (from_end, position) in network.positions(&network.edges[index as usize]).rev().enumerate() {
+        for (from_end, position) in network.positions(&network.edges[index.index()]).rev().enumerate() {
             if let Some(after) = after.replace(position) {
                 let [x, y] = offset_m(position, after);
                 length_m += x.hypot(y);
                 if length_m >= least_m {
-                    let positions = network.positions(&network.edges[index as usize]).len();
+                    let positions = network.positions(&network.edges[index.index()]).len();
                     return (&approach[place..], positions - 1 - from_end);
                 }
             }

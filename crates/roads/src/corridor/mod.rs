@@ -31,6 +31,7 @@ pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 pub use outline::{open_ends, outline};
 pub use stroke::stroke_corridor;
 
+use crate::network::EdgeNo;
 use crate::verdict::UnknownReason;
 
 /// Parameters of corridors made from map lines.
@@ -59,8 +60,8 @@ impl Default for Params {
 /// The stations of one edge in a stroke's corridor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeSpan {
-    /// Index into `Network::edges`.
-    pub edge: u32,
+    /// The edge.
+    pub edge: EdgeNo,
     /// Stations of the edge. Neighbouring edges share the station at their node.
     pub stations: Range<usize>,
     /// Smallest radius of the centreline on the edge, metres (infinite on a straight).

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::profile::{Across, Gap, LEAST_WIDTH_M, Stretch, profile};
 use super::*;
-use crate::network::{Edge, Narrowing, Network, Road, Stroke};
+use crate::network::{Edge, EdgeNo, Narrowing, Network, Road, Stroke};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
 
@@ -65,7 +65,7 @@ pub(crate) fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> 
             barred: false,
             cut: false,
         });
-        n.stroke_edges.push(i as u32);
+        n.stroke_edges.push(EdgeNo::at(i));
     }
     let stroke = Stroke { approach: 0..0, edges: 0..edges.len() as u32, closed };
     (n, stroke)
@@ -175,7 +175,7 @@ fn a_roundabout_is_a_circle_without_a_seam() {
             .collect();
         let (n, s) = network(&edges, true);
         let c = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
-        assert_eq!(c.spans.iter().map(|s| s.edge).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(c.spans.iter().map(|s| s.edge).collect::<Vec<_>>(), [0, 1, 2, 3].map(EdgeNo::new));
         let (first, last) = (c.spans[0].stations.start, c.spans[3].stations.end);
         assert!(first as f64 * c.corridor.spacing_m >= 245.0, "lead-in");
         assert!((c.corridor.len() - last) as f64 * c.corridor.spacing_m >= 58.0, "tail");
@@ -297,7 +297,7 @@ fn an_approach_is_driven_but_has_no_span() {
     let (n, mut s) = network(&[(line(0, 4), known), (line(4, 8), known), (line(8, 9), known)], false);
     (s.approach, s.edges) = (0..1, 1..3);
     let c = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
-    let spans: Vec<_> = c.spans.iter().map(|s| (s.edge, s.stations.start, s.stations.end)).collect();
+    let spans: Vec<_> = c.spans.iter().map(|s| (s.edge.get(), s.stations.start, s.stations.end)).collect();
     // The shared node may fall between two stations; then both edges have both stations.
     assert_eq!(spans.len(), 2);
     assert!(spans[0].0 == 1 && spans[0].1.abs_diff(200) <= 1 && spans[0].2.abs_diff(401) <= 1, "{spans:?}");

@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::areas::Area;
 use super::geometry::EARTH_RADIUS_M;
-use super::{Edge, Network, Road, Stroke};
+use super::{Edge, EdgeNo, Network, Road, Stroke};
 use crate::osm::LonLat;
 
 /// Nodes within this distance of an area that changed are named, metres.
@@ -18,16 +18,16 @@ pub struct Differences {
     /// Ids of nodes at which an edge is gone, or a surface, an island or a kerb may differ.
     pub nodes: Vec<i64>,
     /// By edge of the newer network: the same edge in the older one.
-    pub older: Vec<Option<u32>>,
+    pub older: Vec<Option<EdgeNo>>,
 }
 
 impl Differences {
     /// Compares two networks.
     #[must_use]
     pub fn find(old: &Network, new: &Network) -> Self {
-        let by_id: FxHashMap<i64, u32> = (0_u32..).zip(&old.edges).map(|(index, edge)| (edge.id, index)).collect();
-        let older: Vec<Option<u32>> = (0_u32..)
-            .zip(&new.edges)
+        let by_id: FxHashMap<i64, EdgeNo> = old.numbered_edges().map(|(index, edge)| (edge.id, index)).collect();
+        let older: Vec<Option<EdgeNo>> = new
+            .numbered_edges()
             .map(|(index, edge)| {
                 let there = *by_id.get(&edge.id)?;
                 same_edge(old, there, new, index).then_some(there)
@@ -37,8 +37,8 @@ impl Differences {
             new.edges.iter().zip(&older).filter(|(_, older)| older.is_none()).map(|(edge, _)| edge.id).collect();
         other_strokes(old, new, &mut edges);
         let mut nodes: FxHashSet<i64> = FxHashSet::default();
-        let there: FxHashSet<u32> = older.iter().flatten().copied().collect();
-        for (_, gone) in (0_u32..).zip(&old.edges).filter(|(index, _)| !there.contains(index)) {
+        let there: FxHashSet<EdgeNo> = older.iter().flatten().copied().collect();
+        for (_, gone) in old.numbered_edges().filter(|(index, _)| !there.contains(index)) {
             nodes.extend([gone.from_node, gone.to_node]);
         }
         near_changed_areas(old, new, &mut nodes);
@@ -53,8 +53,8 @@ impl Differences {
 }
 
 /// Whether two edges of one id have the same line, strips, limits and road.
-fn same_edge(old: &Network, a: u32, new: &Network, b: u32) -> bool {
-    let (Some(x), Some(y)) = (old.edges.get(a as usize), new.edges.get(b as usize)) else { return false };
+fn same_edge(old: &Network, a: EdgeNo, new: &Network, b: EdgeNo) -> bool {
+    let (Some(x), Some(y)) = (old.edges.get(a.index()), new.edges.get(b.index())) else { return false };
     // The patterns have no `..`, so a new field does not compile until it is compared or left out here.
     let Edge { id, road: _, from_node, to_node, direction, shape: _, narrowings: _, legal: _, barred, cut: _ } = x;
     let (road, other) = (old.road(x), new.road(y));
@@ -96,7 +96,7 @@ fn same_edge(old: &Network, a: u32, new: &Network, b: u32) -> bool {
 fn other_strokes(old: &Network, new: &Network, edges: &mut FxHashSet<i64>) {
     let ids = |network: &Network, range: &std::ops::Range<u32>| -> Vec<i64> {
         let chain = network.stroke_edges.get(range.start as usize..range.end as usize).unwrap_or_default();
-        chain.iter().filter_map(|&edge| Some(network.edges.get(edge as usize)?.id)).collect()
+        chain.iter().filter_map(|&edge| Some(network.edges.get(edge.index())?.id)).collect()
     };
     let form = |network: &Network, stroke: &Stroke| {
         let Stroke { approach, edges, closed } = stroke;

@@ -4,7 +4,7 @@
 //! Listed are ways that turn at the first node and at the last one. Of any other way one step is straight on, so it is a single
 //! turn, whose area has the other node. U-turns are left out; they remain two turns.
 
-use super::{MovementKind, Network, reverse};
+use super::{EdgeNo, MovementKind, Network, reverse};
 
 /// Greatest length of the edges inside, together, metres.
 const INSIDE_M: f64 = 30.0;
@@ -23,22 +23,22 @@ enum End {
 }
 
 /// The step from one edge into the next.
-type Kinds<'a> = &'a dyn Fn(u32, u32) -> MovementKind;
+type Kinds<'a> = &'a dyn Fn(EdgeNo, EdgeNo) -> MovementKind;
 
 impl Network {
     /// All ways over complexes, by the first edge inside: the edge before, one or two edges inside, and the edge after. Between
     /// two edges there is at most one way, the one with the fewest edges inside, then with the first ones.
-    pub(super) fn over_complexes(&self) -> Vec<(u32, Vec<u32>, u32)> {
+    pub(super) fn over_complexes(&self) -> Vec<(EdgeNo, Vec<EdgeNo>, EdgeNo)> {
         let next = self.straight_on();
-        let kind = |from: u32, to: u32| match () {
-            () if next[from as usize] == to => MovementKind::StraightOn,
+        let kind = |from: EdgeNo, to: EdgeNo| match () {
+            () if next[from.index()] == to => MovementKind::StraightOn,
             () if reverse(self, from, to) => MovementKind::UTurn,
             () => MovementKind::Turn,
         };
         let mut ways = Vec::new();
-        for first in 0..self.edges.len() as u32 {
+        for first in EdgeNo::first(self.edges.len()) {
             let Some(length_m) = self.inside(first, INSIDE_M) else { continue };
-            let entries: Vec<u32> =
+            let entries: Vec<EdgeNo> =
                 self.beside(first, End::From).filter(|&from| kind(from, first) == MovementKind::Turn).collect();
             if entries.is_empty() {
                 continue;
@@ -56,8 +56,8 @@ impl Network {
     }
 
     /// The length of an edge that may lie inside a complex, metres.
-    fn inside(&self, edge: u32, most_m: f64) -> Option<f64> {
-        let e = &self.edges[edge as usize];
+    fn inside(&self, edge: EdgeNo, most_m: f64) -> Option<f64> {
+        let e = &self.edges[edge.index()];
         let few = |node: i64| (1..=MOST_ENDS).contains(&self.crossings.at(node).len());
         if self.road(e).roundabout || e.from_node == e.to_node || !few(e.from_node) || !few(e.to_node) {
             return None;
@@ -66,43 +66,48 @@ impl Network {
     }
 
     /// Second edges inside, after a first one.
-    fn second<'a>(&'a self, first: u32, most_m: f64, kind: Kinds<'a>) -> impl Iterator<Item = u32> + 'a {
-        let start = self.edges[first as usize].from_node;
+    fn second<'a>(&'a self, first: EdgeNo, most_m: f64, kind: Kinds<'a>) -> impl Iterator<Item = EdgeNo> + 'a {
+        let start = self.edges[first.index()].from_node;
         self.beside(first, End::To).filter(move |&second| {
             kind(first, second) != MovementKind::UTurn
-                && self.edges[second as usize].to_node != start
+                && self.edges[second.index()].to_node != start
                 && self.inside(second, most_m).is_some()
         })
     }
 
     /// The ways from the given entries through the edges inside that end with a turn.
-    fn ways_through(&self, entries: &[u32], inside: &[u32], kind: Kinds<'_>) -> Vec<(u32, Vec<u32>, u32)> {
+    fn ways_through(
+        &self,
+        entries: &[EdgeNo],
+        inside: &[EdgeNo],
+        kind: Kinds<'_>,
+    ) -> Vec<(EdgeNo, Vec<EdgeNo>, EdgeNo)> {
         let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else { return Vec::new() };
-        let nodes = [self.edges[first as usize].from_node, self.edges[last as usize].from_node];
+        let nodes = [self.edges[first.index()].from_node, self.edges[last.index()].from_node];
         let exits = self
             .beside(last, End::To)
-            .filter(|&to| kind(last, to) == MovementKind::Turn && !nodes.contains(&self.edges[to as usize].to_node));
-        let exits: Vec<u32> = exits.collect();
+            .filter(|&to| kind(last, to) == MovementKind::Turn && !nodes.contains(&self.edges[to.index()].to_node));
+        let exits: Vec<EdgeNo> = exits.collect();
         let mut ways = Vec::new();
-        let ends = self.edges[last as usize].to_node;
-        for &from in entries.iter().filter(|&&from| self.edges[from as usize].from_node != ends) {
-            let before = &self.edges[from as usize];
+        let ends = self.edges[last.index()].to_node;
+        for &from in entries.iter().filter(|&&from| self.edges[from.index()].from_node != ends) {
+            let before = &self.edges[from.index()];
             let goes =
-                |to: &&u32| self.deflection_over_deg(before, &self.edges[**to as usize], HEADING_M) <= U_TURN_DEG;
+                |to: &&EdgeNo| self.deflection_over_deg(before, &self.edges[to.index()], HEADING_M) <= U_TURN_DEG;
             ways.extend(exits.iter().filter(goes).map(|&to| (from, inside.to_vec(), to)));
         }
         ways
     }
 
     /// Edges, no arcs of roundabouts, that end where an edge begins, or begin where it ends.
-    fn beside(&self, edge: u32, end: End) -> impl Iterator<Item = u32> + '_ {
-        let e = &self.edges[edge as usize];
+    fn beside(&self, edge: EdgeNo, end: End) -> impl Iterator<Item = EdgeNo> + '_ {
+        let e = &self.edges[edge.index()];
         let node = match end {
             End::From => e.from_node,
             End::To => e.to_node,
         };
-        let meets = move |other: &u32| {
-            let o = &self.edges[*other as usize];
+        let meets = move |other: &EdgeNo| {
+            let o = &self.edges[other.index()];
             let met = match end {
                 End::From => o.to_node,
                 End::To => o.from_node,

@@ -2,22 +2,22 @@
 
 use rustc_hash::FxHashMap;
 
-use super::Network;
+use super::{EdgeNo, Network};
 
 /// Edges by node, in order of their indices.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Crossings {
     /// By node: its range in `edges`.
     ranges: FxHashMap<i64, (u32, u32)>,
-    edges: Vec<u32>,
+    edges: Vec<EdgeNo>,
 }
 
 impl Crossings {
     /// Finds the edges that begin or end at each node.
     #[must_use]
     pub fn find(network: &Network) -> Self {
-        let ends = |(index, edge): (u32, &super::Edge)| [(edge.from_node, index), (edge.to_node, index)];
-        let mut all: Vec<(i64, u32)> = (0..).zip(&network.edges).flat_map(ends).collect();
+        let ends = |(index, edge): (EdgeNo, &super::Edge)| [(edge.from_node, index), (edge.to_node, index)];
+        let mut all: Vec<(i64, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
         all.sort_unstable();
         all.dedup();
         let mut found = Self::default();
@@ -34,7 +34,7 @@ impl Crossings {
 
     /// The edges that begin or end at a node. Empty if there are at most two.
     #[must_use]
-    pub fn at(&self, node: i64) -> &[u32] {
+    pub fn at(&self, node: i64) -> &[EdgeNo] {
         let range = self.ranges.get(&node).map_or(0..0, |&(first, end)| first as usize..end as usize);
         self.edges.get(range).unwrap_or_default()
     }

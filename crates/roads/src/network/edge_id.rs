@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Edge;
+use super::{Edge, EdgeNo};
 use crate::osm::facts::Direction;
 
 /// The id of the edge of way `way_id` between these nodes in this direction. `ordinal` counts earlier edges along the
@@ -37,7 +37,7 @@ fn positive(hash: u64) -> i64 {
 pub(super) fn resolve_collisions(edges: &mut [Edge]) -> u64 {
     let changed = changed_ids(edges.par_iter().map(|edge| edge.id));
     for &(edge, id) in &changed {
-        edges[edge as usize].id = id;
+        edges[edge.index()].id = id;
     }
     changed.len() as u64
 }
@@ -45,14 +45,14 @@ pub(super) fn resolve_collisions(edges: &mut [Edge]) -> u64 {
 /// How often a new id is looked for by hashing. Later it is looked for by counting, which has an end whatever ids there are.
 const HASHES: usize = 64;
 
-/// The ids that must change so that all are distinct, with their edges' indices. The first edge with an id keeps it; each later one
+/// The ids that must change so that all are distinct, with their edges. The first edge with an id keeps it; each later one
 /// takes the next free id from repeated hashing, or else from counting.
-pub(super) fn changed_ids(ids: impl IndexedParallelIterator<Item = i64>) -> Vec<(u32, i64)> {
-    let mut by_id: Vec<(i64, u32)> = ids.enumerate().map(|(i, id)| (id, i as u32)).collect();
+pub(super) fn changed_ids(ids: impl IndexedParallelIterator<Item = i64>) -> Vec<(EdgeNo, i64)> {
+    let mut by_id: Vec<(i64, EdgeNo)> = ids.enumerate().map(|(i, id)| (id, EdgeNo::at(i))).collect();
     by_id.par_sort_unstable();
-    let late: Vec<(i64, u32)> = by_id.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).collect();
+    let late: Vec<(i64, EdgeNo)> = by_id.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).collect();
     let (mut given, mut onward) = (FxHashSet::default(), Onward::default());
-    let free = |(id, edge): (i64, u32)| {
+    let free = |(id, edge): (i64, EdgeNo)| {
         let taken = |id: i64| given.contains(&id) || by_id.binary_search_by_key(&id, |&(id, _)| id).is_ok();
         let hashes = || std::iter::successors(Some(id), |&id| Some(positive(scramble(id as u64)))).take(HASHES);
         let id = hashes().find(|&id| !taken(id)).unwrap_or_else(|| onward.free(hashes().last().unwrap_or(id), taken));
@@ -142,8 +142,11 @@ mod tests {
     #[test]
     fn few_collisions_are_resolved_by_hashing() {
         let next = |id: i64| positive(scramble(id as u64));
-        assert_eq!(changed_ids(vec![7, 7, 7].into_par_iter()), [(1, next(7)), (2, next(next(7)))]);
-        assert_eq!(changed_ids(vec![7, next(7), 7].into_par_iter()), [(2, next(next(7)))]);
+        assert_eq!(
+            changed_ids(vec![7, 7, 7].into_par_iter()),
+            [(EdgeNo::new(1), next(7)), (EdgeNo::new(2), next(next(7)))]
+        );
+        assert_eq!(changed_ids(vec![7, next(7), 7].into_par_iter()), [(EdgeNo::new(2), next(next(7)))]);
     }
 
     /// Anybody can name nodes so that many edges have one id: one by one along the hashes that would be 10^10 steps.
@@ -153,7 +156,7 @@ mod tests {
         ids.extend([1, 2, 3, 5]);
         let changed = changed_ids(ids.par_iter().copied());
         assert_eq!(changed.len(), 199_999);
-        changed.iter().for_each(|&(edge, id)| ids[edge as usize] = id);
+        changed.iter().for_each(|&(edge, id)| ids[edge.index()] = id);
         let distinct: FxHashSet<i64> = ids.iter().copied().collect();
         assert!(distinct.len() == ids.len() && ids.iter().all(|&id| id > 0));
     }

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{Edge, Network};
+use super::{Edge, EdgeNo, Network};
 use crate::osm::LonLat;
 
 /// Mean radius of the earth (IUGG), metres. Lengths are accurate to 0.6 %.
@@ -36,8 +36,8 @@ impl Geometry {
     }
 
     /// Turn of a vehicle from edge `a` into edge `b`, degrees, 0..=180.
-    pub(super) fn deflection_deg(&self, a: u32, b: u32) -> f64 {
-        deflection_deg(f64::from(self.outward_deg[a as usize][1]), f64::from(self.outward_deg[b as usize][0]))
+    pub(super) fn deflection_deg(&self, a: EdgeNo, b: EdgeNo) -> f64 {
+        deflection_deg(f64::from(self.outward_deg[a.index()][1]), f64::from(self.outward_deg[b.index()][0]))
     }
 }
 

@@ -17,7 +17,7 @@ use super::restrictions::{self, Reading, Resolved};
 use super::stroke::{self, Chained};
 use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
-use super::{Area, Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
+use super::{Area, Crossings, EdgeNo, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
 use crate::osm::facts::{AreaKind, CrossSection, Jurisdiction, WayFacts};
 use crate::osm::{self, Extract, LonLat, NodeTable, StringPool};
 
@@ -47,7 +47,7 @@ pub struct Division {
     /// By way.
     extents: Vec<Option<Extent>>,
     /// Ids that are not those of the edge's way and nodes, by edge.
-    changed_ids: Vec<(u32, i64)>,
+    changed_ids: Vec<(EdgeNo, i64)>,
     border: Option<Border>,
     countries: BTreeMap<[u8; 2], usize>,
     /// Grows with each portion.
@@ -291,15 +291,15 @@ impl Division {
         self.kept_areas.extend(portion.network.areas.all().iter().map(|area| area.way_id));
     }
 
-    /// By road and by edge of a portion's network: the index in the whole network.
-    fn numbers(&self, ways: &Ways, network: &Network) -> (Vec<u32>, Vec<u32>) {
+    /// By road and by edge of a portion's network: the number in the whole network.
+    fn numbers(&self, ways: &Ways, network: &Network) -> (Vec<u32>, Vec<EdgeNo>) {
         let way = |road: &super::Road| ways.first_from(road.way_id);
         let of_road: Vec<usize> = network.roads.iter().map(way).collect();
         let roads = of_road.iter().map(|&way| self.roads_before[way]).collect();
         let mut edges = Vec::with_capacity(network.edges.len());
         for of_way in network.edges.chunk_by(|a, b| a.road == b.road) {
             let first = of_way.first().map_or(0, |edge| self.edges_before[of_road[edge.road as usize]]);
-            edges.extend((first..).take(of_way.len()));
+            edges.extend((first..).map(EdgeNo::new).take(of_way.len()));
         }
         (roads, edges)
     }
@@ -349,9 +349,9 @@ fn owned(network: &Network, block: &Block) -> Vec<bool> {
     let mut owned = vec![false; network.edges.len()];
     for stroke in &network.strokes {
         let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
-        let first = edges.first().and_then(|&first| network.edges.get(first as usize));
+        let first = edges.first().and_then(|&first| network.edges.get(first.index()));
         if first.is_some_and(|first| block.has(network.cell(first))) {
-            edges.iter().for_each(|&edge| owned[edge as usize] = true);
+            edges.iter().for_each(|&edge| owned[edge.index()] = true);
         }
     }
     owned

@@ -15,6 +15,7 @@ mod corners;
 mod crossings;
 mod cut;
 mod edge_id;
+mod edge_no;
 mod edges;
 mod extent;
 mod geometry;
@@ -44,6 +45,7 @@ pub use build::{build, build_with};
 pub use cell::Cell;
 pub use compare::Differences;
 pub use crossings::Crossings;
+pub use edge_no::EdgeNo;
 pub use geometry::{EARTH_RADIUS_M, length_m, offset_m};
 pub use ground::{Division, Ground};
 pub use movements::{Movement, MovementKind, Movements};
@@ -165,12 +167,12 @@ pub struct Network {
     pub narrowings: Vec<Narrowing>,
     /// Strokes. Every edge is in exactly one stroke's `edges`.
     pub strokes: Vec<Stroke>,
-    /// Edges of strokes and approaches: indices into `edges`.
-    pub stroke_edges: Vec<u32>,
+    /// Edges of strokes and approaches.
+    pub stroke_edges: Vec<EdgeNo>,
     /// Turn restrictions, by relation.
     pub restrictions: Vec<Restriction>,
-    /// Edges of restrictions: indices into `edges`.
-    pub restriction_edges: Vec<u32>,
+    /// Edges of restrictions.
+    pub restriction_edges: Vec<EdgeNo>,
     /// Mapped surfaces of junctions.
     pub areas: Areas,
     /// Places where two-way roads part into carriageways; derived from strokes and edges.
@@ -187,8 +189,8 @@ pub struct Network {
 }
 
 /// Whether two edges are the two directions of one piece of road.
-fn reverse(network: &Network, a: u32, b: u32) -> bool {
-    let (a, b) = (&network.edges[a as usize], &network.edges[b as usize]);
+fn reverse(network: &Network, a: EdgeNo, b: EdgeNo) -> bool {
+    let (a, b) = (&network.edges[a.index()], &network.edges[b.index()]);
     a.road == b.road && a.shape == b.shape && a.direction != b.direction
 }
 
@@ -213,7 +215,7 @@ impl Network {
         let mut of_edge = vec![u32::MAX; self.edges.len()];
         for (index, stroke) in (0..).zip(&self.strokes) {
             for &edge in &self.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
-                of_edge[edge as usize] = index;
+                of_edge[edge.index()] = index;
             }
         }
         of_edge

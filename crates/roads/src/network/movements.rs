@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::{Network, Passage, pairing, reverse};
+use super::{EdgeNo, Network, Passage, pairing, reverse};
 
 /// Kind of a movement at a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -23,9 +23,9 @@ pub enum MovementKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Movement {
     /// The edge before the movement.
-    pub from: u32,
+    pub from: EdgeNo,
     /// The edge after the movement. It starts at the node where `from` ends.
-    pub to: u32,
+    pub to: EdgeNo,
     /// Kind of the movement.
     pub kind: MovementKind,
     /// The first restriction that forbids it (index into [`Network::restrictions`]).
@@ -51,27 +51,27 @@ impl Movements {
 
     /// The movements out of an edge, by `to`.
     #[must_use]
-    pub fn after(&self, edge: u32) -> &[Movement] {
-        let range = self.after.get(edge as usize).cloned().unwrap_or_default();
+    pub fn after(&self, edge: EdgeNo) -> &[Movement] {
+        let range = self.after.get(edge.index()).cloned().unwrap_or_default();
         &self.all[range.start as usize..range.end as usize]
     }
 
     /// Index in [`Movements::all`] at which [`Movements::after`] begins.
     #[must_use]
-    pub fn first(&self, edge: u32) -> usize {
-        self.after.get(edge as usize).map_or(0, |range| range.start as usize)
+    pub fn first(&self, edge: EdgeNo) -> usize {
+        self.after.get(edge.index()).map_or(0, |range| range.start as usize)
     }
 
     /// The movement from one edge into another, if there is one.
     #[must_use]
-    pub fn between(&self, from: u32, to: u32) -> Option<&Movement> {
+    pub fn between(&self, from: EdgeNo, to: EdgeNo) -> Option<&Movement> {
         self.after(from).iter().find(|movement| movement.to == to)
     }
 
     /// Index in [`Movements::all`] of the movement from one edge into another, if there is one.
     #[must_use]
-    pub fn index(&self, from: u32, to: u32) -> Option<usize> {
-        let range = self.after.get(from as usize).cloned()?;
+    pub fn index(&self, from: EdgeNo, to: EdgeNo) -> Option<usize> {
+        let range = self.after.get(from.index()).cloned()?;
         let within = self.after(from).iter().position(|movement| movement.to == to)?;
         Some(range.start as usize + within)
     }
@@ -83,7 +83,7 @@ impl Movements {
     }
 
     /// The passages that begin with an edge, each with its index in [`Movements::passages`].
-    pub fn over(&self, from: u32) -> impl Iterator<Item = (usize, &Passage)> {
+    pub fn over(&self, from: EdgeNo) -> impl Iterator<Item = (usize, &Passage)> {
         let first = self.passages.partition_point(|passage| passage.from < from);
         self.passages.iter().enumerate().skip(first).take_while(move |(_, passage)| passage.from == from)
     }
@@ -91,7 +91,7 @@ impl Movements {
     /// Index in [`Movements::passages`] of the passage from one edge to another. There is at most one. The same two
     /// edges have no movement, because they do not meet.
     #[must_use]
-    pub fn passage(&self, from: u32, to: u32) -> Option<usize> {
+    pub fn passage(&self, from: EdgeNo, to: EdgeNo) -> Option<usize> {
         self.over(from).find(|(_, passage)| passage.to == to).map(|(place, _)| place)
     }
 }
@@ -100,8 +100,8 @@ impl Network {
     /// All movements. Time and memory grow with their number (about 3 per edge).
     #[must_use]
     pub fn movements(&self) -> Movements {
-        let mut ends: Vec<(i64, bool, u32)> = Vec::with_capacity(self.edges.len() * 2);
-        for (edge, e) in (0_u32..).zip(&self.edges) {
+        let mut ends: Vec<(i64, bool, EdgeNo)> = Vec::with_capacity(self.edges.len() * 2);
+        for (edge, e) in self.numbered_edges() {
             ends.push((e.to_node, false, edge));
             ends.push((e.from_node, true, edge));
         }
@@ -116,7 +116,7 @@ impl Network {
             for &(_, _, from) in arriving {
                 let start = movements.all.len() as u32;
                 for &(_, _, to) in leaving {
-                    let kind = if next[from as usize] == to {
+                    let kind = if next[from.index()] == to {
                         MovementKind::StraightOn
                     } else if reverse(self, from, to) {
                         MovementKind::UTurn
@@ -125,29 +125,29 @@ impl Network {
                     };
                     movements.all.push(Movement { from, to, kind, forbidden: first(&forbidden, from, to) });
                 }
-                movements.after[from as usize] = start..movements.all.len() as u32;
+                movements.after[from.index()] = start..movements.all.len() as u32;
             }
         }
         movements
     }
 
-    /// By edge: the edge that continues it along its stroke, or [`u32::MAX`].
-    pub(super) fn straight_on(&self) -> Vec<u32> {
+    /// By edge: the edge that continues it along its stroke, or [`EdgeNo::MAX`].
+    pub(super) fn straight_on(&self) -> Vec<EdgeNo> {
         let mut next = vec![pairing::NONE; self.edges.len()];
         for stroke in &self.strokes {
             let edges = &self.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
             for pair in edges.windows(2) {
-                next[pair[0] as usize] = pair[1];
+                next[pair[0].index()] = pair[1];
             }
             if let (true, Some(&first), Some(&last)) = (stroke.closed, edges.first(), edges.last()) {
-                next[last as usize] = first;
+                next[last.index()] = first;
             }
         }
         next
     }
 
     /// Restrictions of two edges: from, to and index of the restriction; sorted.
-    fn forbidden_pairs(&self) -> Vec<(u32, u32, u32)> {
+    fn forbidden_pairs(&self) -> Vec<(EdgeNo, EdgeNo, u32)> {
         let pair = |(no, restriction): (u32, &super::Restriction)| match *self.sequence(restriction) {
             [from, to] => Some((from, to, no)),
             _ => None,
@@ -159,12 +159,12 @@ impl Network {
 
     /// The edges of a restriction, in driving order.
     #[must_use]
-    pub fn sequence(&self, restriction: &super::Restriction) -> &[u32] {
+    pub fn sequence(&self, restriction: &super::Restriction) -> &[EdgeNo] {
         &self.restriction_edges[restriction.edges.start as usize..restriction.edges.end as usize]
     }
 }
 
-fn first(forbidden: &[(u32, u32, u32)], from: u32, to: u32) -> Option<u32> {
+fn first(forbidden: &[(EdgeNo, EdgeNo, u32)], from: EdgeNo, to: EdgeNo) -> Option<u32> {
     let at = forbidden.partition_point(|&(f, t, _)| (f, t) < (from, to));
     forbidden.get(at).filter(|&&(f, t, _)| (f, t) == (from, to)).map(|row| row.2)
 }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::restrictions::Leaving;
-use super::{Network, reverse};
+use super::{EdgeNo, Network, reverse};
 
 /// How far a way's road is followed, metres and edges. No split part of a way at a junction is as long.
 const REACH_M: f64 = 500.0;
@@ -18,11 +18,11 @@ pub(super) struct Onward<'n> {
 
 impl Onward<'_> {
     /// The edges that arrive at a node on the road that goes on from a way's edges.
-    pub(super) fn arriving_at(&self, edges: &Range<u32>, node: i64) -> Vec<u32> {
+    pub(super) fn arriving_at(&self, edges: &Range<EdgeNo>, node: i64) -> Vec<EdgeNo> {
         let mut found = Vec::new();
-        for edge in edges.clone() {
+        for edge in EdgeNo::each(edges.clone()) {
             self.walk(edge, &mut |next| {
-                let there = self.network.edges[next as usize].to_node == node;
+                let there = self.network.edges[next.index()].to_node == node;
                 found.extend(there.then_some(next));
                 there || edges.contains(&next)
             });
@@ -33,12 +33,12 @@ impl Onward<'_> {
     }
 
     /// The edges that leave a node on a road that goes on into a way's edges.
-    pub(super) fn leaving_node(&self, node: i64, edges: &Range<u32>) -> Vec<u32> {
-        let leads_there = |&first: &u32| {
+    pub(super) fn leaving_node(&self, node: i64, edges: &Range<EdgeNo>) -> Vec<EdgeNo> {
+        let leads_there = |&first: &EdgeNo| {
             let mut there = false;
             self.walk(first, &mut |next| {
                 there |= edges.contains(&next);
-                there || self.network.edges[next as usize].from_node == node
+                there || self.network.edges[next.index()].from_node == node
             });
             there
         };
@@ -46,29 +46,29 @@ impl Onward<'_> {
     }
 
     /// Whether a road goes on from one edge into the next: it keeps its name or number and class, or there is no other way on.
-    pub(super) fn goes_on(&self, edge: u32, next: u32) -> bool {
-        let end = self.network.edges[edge as usize].to_node;
+    pub(super) fn goes_on(&self, edge: EdgeNo, next: EdgeNo) -> bool {
+        let end = self.network.edges[edge.index()].to_node;
         let mut others =
             self.leaving.at(self.network, end).iter().filter(|&&other| !reverse(self.network, edge, other));
-        let [a, b] = [edge, next].map(|edge| self.network.road(&self.network.edges[edge as usize]));
+        let [a, b] = [edge, next].map(|edge| self.network.road(&self.network.edges[edge.index()]));
         let same = |a: Option<_>, b: Option<_>| a.is_some() && a == b;
         let named = same(a.name, b.name) || same(a.reference, b.reference);
         named && (a.class, a.link) == (b.class, b.link) || others.all(|&other| other == next)
     }
 
     /// Visits the edges beyond `first` on its road, until `ends` says that a branch ends.
-    fn walk(&self, first: u32, ends: &mut dyn FnMut(u32) -> bool) {
+    fn walk(&self, first: EdgeNo, ends: &mut dyn FnMut(EdgeNo) -> bool) {
         let mut open = vec![(first, 0.0, 0)];
         let mut seen = vec![first];
         while let Some((edge, along_m, count)) = open.pop() {
-            let end = self.network.edges[edge as usize].to_node;
+            let end = self.network.edges[edge.index()].to_node;
             for &next in self.leaving.at(self.network, end) {
                 let back = reverse(self.network, edge, next);
                 if back || seen.contains(&next) || !self.goes_on(edge, next) {
                     continue;
                 }
                 seen.push(next);
-                let along_m = along_m + self.network.length_m(&self.network.edges[next as usize]);
+                let along_m = along_m + self.network.length_m(&self.network.edges[next.index()]);
                 if !ends(next) && count + 1 < MOST_EDGES && along_m < REACH_M {
                     open.push((next, along_m, count + 1));
                 }

@@ -11,12 +11,12 @@ use rayon::prelude::*;
 
 use super::corners::{REACH_M, is_sharp};
 use super::geometry::Geometry;
-use super::{Edge, Network, Road, StrokeOptions, reverse};
+use super::{Edge, EdgeNo, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway};
 
 /// No edge.
-pub(super) const NONE: u32 = u32::MAX;
+pub(super) const NONE: EdgeNo = EdgeNo::MAX;
 
 /// Edges at one node above which none of them is called straight on. No real junction has so many, and a crafted file
 /// could make the work quadratic.
@@ -30,32 +30,33 @@ const NARROWER_M: f32 = 0.4;
 /// The pairs: which edge follows and which precedes each edge.
 pub(super) struct Pairing {
     /// By edge: the edge that continues it straight on, or [`NONE`].
-    pub(super) next: Vec<u32>,
+    pub(super) next: Vec<EdgeNo>,
     /// By edge: the edge that it continues, otherwise the edge that a vehicle most plausibly comes from, or [`NONE`].
-    pub(super) before: Vec<u32>,
+    pub(super) before: Vec<EdgeNo>,
     /// Nodes with more than [`CROWD`] edges, by an edge that begins or ends there.
-    pub(super) crowded: Vec<u32>,
+    pub(super) crowded: Vec<EdgeNo>,
 }
 
 impl Pairing {
     /// Whether the edge before `edge` continues straight on into it.
-    pub(super) fn continues(&self, edge: u32) -> bool {
-        let before = self.before[edge as usize];
-        before != NONE && self.next[before as usize] == edge
+    pub(super) fn continues(&self, edge: EdgeNo) -> bool {
+        let before = self.before[edge.index()];
+        before != NONE && self.next[before.index()] == edge
     }
 
     /// Pairs the edges at every node.
     pub(super) fn find(network: &Network, geometry: &Geometry, options: &StrokeOptions) -> Self {
-        let mut ends: Vec<End> = (0..network.edges.len() as u32)
+        let mut ends: Vec<End> = (0..network.edges.len())
             .into_par_iter()
+            .map(EdgeNo::at)
             .flat_map_iter(|edge| {
-                let e = &network.edges[edge as usize];
+                let e = &network.edges[edge.index()];
                 [End { node: e.to_node, leaves: false, edge }, End { node: e.from_node, leaves: true, edge }]
             })
             .collect();
         ends.par_sort_unstable();
         // Every slot belongs to one node, so no two tasks write the same slot.
-        let slots = || (0..network.edges.len()).map(|_| AtomicU32::new(NONE)).collect::<Vec<_>>();
+        let slots = || (0..network.edges.len()).map(|_| AtomicU32::new(NONE.get())).collect::<Vec<_>>();
         let (next, before) = (slots(), slots());
         let at_nodes = || ends.par_chunk_by(|a, b| a.node == b.node);
         at_nodes().filter(|ends| ends.len() <= CROWD).for_each(|ends| {
@@ -63,7 +64,7 @@ impl Pairing {
         });
         let first = |ends: &[End]| (ends.len() > CROWD).then(|| ends.first().map(|end| end.edge)).flatten();
         let crowded = at_nodes().filter_map(first).collect();
-        let plain = |slots: Vec<AtomicU32>| slots.into_iter().map(AtomicU32::into_inner).collect();
+        let plain = |slots: Vec<AtomicU32>| slots.into_iter().map(|slot| EdgeNo::new(slot.into_inner())).collect();
         Self { next: plain(next), before: plain(before), crowded }
     }
 }
@@ -73,7 +74,7 @@ impl Pairing {
 struct End {
     node: i64,
     leaves: bool,
-    edge: u32,
+    edge: EdgeNo,
 }
 
 /// Two edges, with the cost of taking one as the other's continuation.
@@ -105,7 +106,7 @@ impl<'n> Junction<'n> {
 
     fn pair(&self, next: &[AtomicU32], before: &[AtomicU32]) {
         // Edges at which a road begins although another one leads straight on into them.
-        let mut alone: Vec<u32> = Vec::new();
+        let mut alone: Vec<EdgeNo> = Vec::new();
         for a in self.arriving {
             let best = self.best(self.leaving, |b| self.straight_on(a, b));
             if let Some(b) = best
@@ -115,18 +116,18 @@ impl<'n> Junction<'n> {
                     alone.push(b.edge);
                     continue;
                 }
-                next[a.edge as usize].store(b.edge, Ordering::Relaxed);
-                before[b.edge as usize].store(a.edge, Ordering::Relaxed);
+                next[a.edge.index()].store(b.edge.get(), Ordering::Relaxed);
+                before[b.edge.index()].store(a.edge.get(), Ordering::Relaxed);
             }
         }
         for b in self.leaving {
-            let slot = &before[b.edge as usize];
+            let slot = &before[b.edge.index()];
             if alone.contains(&b.edge) {
                 continue;
             }
-            if slot.load(Ordering::Relaxed) == NONE {
+            if slot.load(Ordering::Relaxed) == NONE.get() {
                 let origin = self.best(self.arriving, |a| self.from(a, b));
-                slot.store(origin.map_or(NONE, |a| a.edge), Ordering::Relaxed);
+                slot.store(origin.map_or(NONE, |a| a.edge).get(), Ordering::Relaxed);
             }
         }
     }
@@ -185,7 +186,7 @@ impl<'n> Junction<'n> {
 
     /// The heading of a hairpin with its apex at the node turns by more than the limit over chords, but not at the node
     /// itself.
-    fn bends_back(&self, a: u32, b: u32) -> f64 {
+    fn bends_back(&self, a: EdgeNo, b: EdgeNo) -> f64 {
         self.network.deflection_over_deg(self.edge(a), self.edge(b), 0.0)
     }
 
@@ -245,11 +246,11 @@ impl<'n> Junction<'n> {
         Candidate { cost: (cost_deg * 1e3).round() as u32, ends }
     }
 
-    fn edge(&self, edge: u32) -> &'n Edge {
-        &self.network.edges[edge as usize]
+    fn edge(&self, edge: EdgeNo) -> &'n Edge {
+        &self.network.edges[edge.index()]
     }
 
-    fn road(&self, edge: u32) -> &'n Road {
+    fn road(&self, edge: EdgeNo) -> &'n Road {
         self.network.road(self.edge(edge))
     }
 }

@@ -5,7 +5,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::Network;
+use super::{EdgeNo, Network};
 
 /// The junction that a passage leads over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -31,11 +31,11 @@ impl PassageKind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Passage {
     /// The edge before the junction. It ends at the junction's first node.
-    pub from: u32,
+    pub from: EdgeNo,
     /// The edge after the junction. It starts at the junction's last node.
-    pub to: u32,
+    pub to: EdgeNo,
     /// The edges between in driving order: at least one. Of a roundabout, less than the whole ring.
-    pub through: Vec<u32>,
+    pub through: Vec<EdgeNo>,
     /// A restriction that forbids any step of the passage (index into [`Network::restrictions`]).
     pub forbidden: Option<u32>,
 }
@@ -47,7 +47,7 @@ impl Network {
         let bans = Bans::of(self);
         let mut ways: Vec<_> = self.over_rings().into_iter().chain(self.over_complexes()).collect();
         ways.sort_by(|a, b| (a.0, a.2, &a.1).cmp(&(b.0, b.2, &b.1)));
-        let passage = |(from, through, to): (u32, Vec<u32>, u32)| {
+        let passage = |(from, through, to): (EdgeNo, Vec<EdgeNo>, EdgeNo)| {
             let forbidden = bans.first(self, from, &through, to);
             Passage { from, to, through, forbidden }
         };
@@ -56,18 +56,18 @@ impl Network {
 
     /// The kind of a passage over these edges. `None` if there are none.
     #[must_use]
-    pub fn passage_kind(&self, through: &[u32]) -> Option<PassageKind> {
-        let edge = self.edges.get(*through.first()? as usize)?;
+    pub fn passage_kind(&self, through: &[EdgeNo]) -> Option<PassageKind> {
+        let edge = self.edges.get(through.first()?.index())?;
         Some(if self.road(edge).roundabout { PassageKind::Roundabout } else { PassageKind::Complex })
     }
 }
 
 /// Restrictions by their first edge.
-struct Bans(FxHashMap<u32, Vec<u32>>);
+struct Bans(FxHashMap<EdgeNo, Vec<u32>>);
 
 impl Bans {
     fn of(network: &Network) -> Self {
-        let mut bans: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        let mut bans: FxHashMap<EdgeNo, Vec<u32>> = FxHashMap::default();
         for (no, restriction) in (0_u32..).zip(&network.restrictions) {
             if let Some(&first) = network.sequence(restriction).first() {
                 bans.entry(first).or_default().push(no);
@@ -77,8 +77,8 @@ impl Bans {
     }
 
     /// The first restriction that forbids a step of a way.
-    fn first(&self, network: &Network, from: u32, through: &[u32], to: u32) -> Option<u32> {
-        let way: Vec<u32> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
+    fn first(&self, network: &Network, from: EdgeNo, through: &[EdgeNo], to: EdgeNo) -> Option<u32> {
+        let way: Vec<EdgeNo> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
         let holds = |at: usize, no: u32| {
             network.restrictions.get(no as usize).is_some_and(|ban| way[at..].starts_with(network.sequence(ban)))
         };

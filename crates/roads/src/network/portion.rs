@@ -6,7 +6,7 @@
 use super::blocks::Block;
 use super::restrictions::{Reading, Resolved};
 use super::stroke::{Beginning, Chained};
-use super::{Edge, Network, NetworkAccount, Restriction};
+use super::{Edge, EdgeNo, Network, NetworkAccount, Restriction};
 use crate::osm::LonLat;
 
 /// A network with its place in the whole network. It can be written and read, so that another machine certifies it.
@@ -27,7 +27,7 @@ pub(super) struct PortionIndices {
     /// By road.
     pub(super) roads: Vec<u32>,
     /// By edge.
-    pub(super) edges: Vec<u32>,
+    pub(super) edges: Vec<EdgeNo>,
     /// By edge: whether the portion owns it.
     pub(super) owned: Vec<bool>,
 }
@@ -41,8 +41,8 @@ pub struct PortionRestriction {
     pub(super) reading: Reading,
     /// The restriction.
     pub restriction: Restriction,
-    /// Its edges in driving order, as indices into the whole network.
-    pub edges: Vec<u32>,
+    /// Its edges in driving order, as numbers in the whole network.
+    pub edges: Vec<EdgeNo>,
 }
 
 impl Portion {
@@ -59,10 +59,10 @@ impl Portion {
         Self::new(network, None, chained, Resolved { rules, readings, on_network: Vec::new() })
     }
 
-    /// The index of an edge in the whole network.
+    /// The number of an edge in the whole network.
     #[must_use]
-    pub fn edge(&self, edge: u32) -> u32 {
-        self.indices.as_ref().map_or(edge, |indices| indices.edges[edge as usize])
+    pub fn edge(&self, edge: EdgeNo) -> EdgeNo {
+        self.indices.as_ref().map_or(edge, |indices| indices.edges[edge.index()])
     }
 
     /// The index of a road in the whole network.
@@ -73,8 +73,8 @@ impl Portion {
 
     /// Whether the portion owns an edge.
     #[must_use]
-    pub fn owns(&self, edge: u32) -> bool {
-        self.indices.as_ref().is_none_or(|indices| indices.owned[edge as usize])
+    pub fn owns(&self, edge: EdgeNo) -> bool {
+        self.indices.as_ref().is_none_or(|indices| indices.owned[edge.index()])
     }
 
     /// Whether a position is in one of the portion's cells.
@@ -83,9 +83,9 @@ impl Portion {
         self.indices.as_ref().is_none_or(|indices| indices.block.has(super::Cell::of(position)))
     }
 
-    /// The edges that the portion owns, with their indices here, in order.
-    pub fn edges(&self) -> impl Iterator<Item = (u32, &Edge)> {
-        (0_u32..).zip(&self.network.edges).filter(|(index, _)| self.owns(*index))
+    /// The edges that the portion owns, with their numbers here, in order.
+    pub fn edges(&self) -> impl Iterator<Item = (EdgeNo, &Edge)> {
+        self.network.numbered_edges().filter(|(index, _)| self.owns(*index))
     }
 
     /// The strokes that the portion owns, as indices, in order.

@@ -14,7 +14,7 @@ use rustc_hash::FxHashSet;
 use super::onward::Onward;
 use super::sides::{Meant, meant};
 use super::vertices::Vertices;
-use super::{Network, Restriction, reverse};
+use super::{EdgeNo, Network, Restriction, reverse};
 use crate::osm::facts::RestrictionKind;
 use crate::osm::{self, NodeTable, Via};
 
@@ -71,7 +71,7 @@ pub(super) fn resolve(
     if restrictions.is_empty() {
         return resolved;
     }
-    let found: Vec<(usize, usize, Reading, Vec<u32>)> = {
+    let found: Vec<(usize, usize, Reading, Vec<EdgeNo>)> = {
         let leaving = Leaving::of(network);
         let resolver = Resolver { leaving: &leaving, arriving: OnceCell::new(), network, nodes, vertices };
         let mut found = Vec::new();
@@ -106,18 +106,18 @@ pub(super) fn resolve(
 }
 
 /// Edges, sorted by the node that they leave.
-pub(super) struct Leaving(Vec<u32>);
+pub(super) struct Leaving(Vec<EdgeNo>);
 
 impl Leaving {
     pub(super) fn of(network: &Network) -> Self {
-        let mut edges: Vec<u32> = (0..network.edges.len() as u32).collect();
-        edges.sort_by_key(|&edge| network.edges[edge as usize].from_node);
+        let mut edges: Vec<EdgeNo> = EdgeNo::first(network.edges.len()).collect();
+        edges.sort_by_key(|&edge| network.edges[edge.index()].from_node);
         Self(edges)
     }
 
     /// The edges that leave a node, in edge order.
-    pub(super) fn at(&self, network: &Network, node: i64) -> &[u32] {
-        let from = |edge: &u32| network.edges[*edge as usize].from_node;
+    pub(super) fn at(&self, network: &Network, node: i64) -> &[EdgeNo] {
+        let from = |edge: &EdgeNo| network.edges[edge.index()].from_node;
         let start = self.0.partition_point(|edge| from(edge) < node);
         let end = start + self.0[start..].partition_point(|edge| from(edge) == node);
         &self.0[start..end]
@@ -125,7 +125,7 @@ impl Leaving {
 }
 
 /// What a rule forbids, sorted, and how it was read.
-type Read = (Reading, Vec<Vec<u32>>);
+type Read = (Reading, Vec<Vec<EdgeNo>>);
 
 /// The role of a way in a restriction.
 #[derive(Clone, Copy, PartialEq)]
@@ -140,7 +140,7 @@ struct Resolver<'n> {
     vertices: &'n Vertices,
     leaving: &'n Leaving,
     /// Edges, sorted by the node at which they arrive. Rarely needed.
-    arriving: OnceCell<Vec<u32>>,
+    arriving: OnceCell<Vec<EdgeNo>>,
 }
 
 impl Resolver<'_> {
@@ -166,7 +166,7 @@ impl Resolver<'_> {
         restriction: &osm::Restriction,
         via: &[i64],
         reading: &mut Reading,
-    ) -> Option<Vec<Vec<u32>>> {
+    ) -> Option<Vec<Vec<EdgeNo>>> {
         let nodes: Vec<i64> = match via {
             [] => self.meetings(restriction),
             via => via.iter().filter_map(|&id| self.vertices.node(self.nodes, id)).collect(),
@@ -191,8 +191,9 @@ impl Resolver<'_> {
 
     /// The nodes at which a way `from` meets a way `to`.
     fn meetings(&self, restriction: &osm::Restriction) -> Vec<i64> {
-        let edges = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
-        let edge = |edge: &u32| &self.network.edges[*edge as usize];
+        let edges =
+            |ways: &[i64]| ways.iter().flat_map(|&way| EdgeNo::each(self.edges_of(way))).collect::<Vec<EdgeNo>>();
+        let edge = |edge: &EdgeNo| &self.network.edges[edge.index()];
         let starts: Vec<i64> = edges(&restriction.to).iter().map(|to| edge(to).from_node).collect();
         let mut nodes: Vec<i64> = edges(&restriction.from).iter().map(|from| edge(from).to_node).collect();
         nodes.retain(|node| starts.contains(node));
@@ -203,7 +204,7 @@ impl Resolver<'_> {
 
     /// By node: for each way, its edges that end there, or begin there if it is a `to`. Without ways, all edges there count as
     /// those of one way. A way that is at none of the nodes stands for the road that goes on to it.
-    fn at_each(&self, nodes: &[i64], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<u32>>> {
+    fn at_each(&self, nodes: &[i64], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<EdgeNo>>> {
         let leave = member == Member::To;
         if ways.is_empty() {
             let all = |&node: &i64| vec![if leave { self.leaving_at(node) } else { self.arriving_at(node) }.to_vec()];
@@ -211,14 +212,14 @@ impl Resolver<'_> {
         }
         let mut by_node = vec![Vec::new(); nodes.len()];
         for &way in ways {
-            let at = |node: i64| -> Vec<u32> {
-                let there = |&edge: &u32| {
-                    let edge = &self.network.edges[edge as usize];
+            let at = |node: i64| -> Vec<EdgeNo> {
+                let there = |&edge: &EdgeNo| {
+                    let edge = &self.network.edges[edge.index()];
                     (if leave { edge.from_node } else { edge.to_node }) == node
                 };
-                self.edges_of(way).filter(there).collect()
+                EdgeNo::each(self.edges_of(way)).filter(there).collect()
             };
-            let mut own: Vec<Vec<u32>> = nodes.iter().map(|&node| at(node)).collect();
+            let mut own: Vec<Vec<EdgeNo>> = nodes.iter().map(|&node| at(node)).collect();
             if own.iter().all(Vec::is_empty) {
                 let onward = Onward { network: self.network, leaving: self.leaving };
                 let edges = self.edges_of(way);
@@ -238,7 +239,13 @@ impl Resolver<'_> {
     }
 
     /// The movements that a `no_…` forbids at a node.
-    fn no(&self, kind: RestrictionKind, from: &[Vec<u32>], to: &[Vec<u32>], reading: &mut Reading) -> Vec<(u32, u32)> {
+    fn no(
+        &self,
+        kind: RestrictionKind,
+        from: &[Vec<EdgeNo>],
+        to: &[Vec<EdgeNo>],
+        reading: &mut Reading,
+    ) -> Vec<(EdgeNo, EdgeNo)> {
         let mut all = Vec::new();
         for (f, t) in from.iter().flat_map(|f| to.iter().map(move |t| (f, t))) {
             let meant = meant(self.network, kind, f, t);
@@ -254,10 +261,10 @@ impl Resolver<'_> {
         &self,
         kind: RestrictionKind,
         node: i64,
-        from: &[Vec<u32>],
-        to: &[Vec<u32>],
+        from: &[Vec<EdgeNo>],
+        to: &[Vec<EdgeNo>],
         reading: &mut Reading,
-    ) -> Vec<(u32, u32)> {
+    ) -> Vec<(EdgeNo, EdgeNo)> {
         let leaving = self.leaving_at(node);
         let mut all = Vec::new();
         for arrivals in from.iter().filter(|arrivals| !arrivals.is_empty()) {
@@ -265,13 +272,13 @@ impl Resolver<'_> {
             reading.by_side |= meant.iter().any(|meant| matches!(meant, Meant::BySide(_)));
             reading.no_destination |= meant.iter().all(|meant| meant.pairs().is_empty());
             // Of two approaches on one way, the side names one.
-            let decided = |&f: &u32| {
+            let decided = |&f: &EdgeNo| {
                 let of = |meant: &Meant| matches!(meant, Meant::BySide(pairs) if pairs.iter().any(|pair| pair.0 == f));
                 meant.iter().any(of)
             };
             let by_side = arrivals.len() > 1 && arrivals.iter().any(decided);
             for &f in arrivals.iter().filter(|f| !by_side || decided(f)) {
-                let kept: Vec<u32> = meant.iter().filter_map(|meant| alone(meant, f)).collect();
+                let kept: Vec<EdgeNo> = meant.iter().filter_map(|meant| alone(meant, f)).collect();
                 reading.any_side |= meant.iter().any(|meant| matches!(meant, Meant::Any(_)));
                 all.extend(leaving.iter().filter(|t| !kept.contains(t)).map(|&t| (f, t)));
             }
@@ -285,8 +292,9 @@ impl Resolver<'_> {
         restriction: &osm::Restriction,
         via: &[i64],
         reading: &mut Reading,
-    ) -> Option<Vec<Vec<u32>>> {
-        let edges = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
+    ) -> Option<Vec<Vec<EdgeNo>>> {
+        let edges =
+            |ways: &[i64]| ways.iter().flat_map(|&way| EdgeNo::each(self.edges_of(way))).collect::<Vec<EdgeNo>>();
         let (from, to) = (edges(&restriction.from), edges(&restriction.to));
         let mut paths = Vec::new();
         let mut steps = 0;
@@ -316,13 +324,14 @@ impl Resolver<'_> {
         if !kind.only || !cut_short.is_empty() {
             return Some([paths, cut_short].concat());
         }
-        let begins: FxHashSet<&[u32]> = paths.iter().flat_map(|path| (1..=path.len()).map(|to| &path[..to])).collect();
+        let begins: FxHashSet<&[EdgeNo]> =
+            paths.iter().flat_map(|path| (1..=path.len()).map(|to| &path[..to])).collect();
         let mut forbidden = Vec::new();
         for path in &paths {
             let last = if reading.no_destination { path.len() + 1 } else { path.len() };
             for length in 1..last {
                 let prefix = &path[..length];
-                let end = self.network.edges[path[length - 1] as usize].to_node;
+                let end = self.network.edges[path[length - 1].index()].to_node;
                 let others = self.leaving_at(end).iter().map(|&x| [prefix, &[x]].concat());
                 forbidden.extend(others.filter(|other| !begins.contains(&other[..])));
             }
@@ -334,16 +343,16 @@ impl Resolver<'_> {
     }
 
     /// The movements from edges onto a way of `via`.
-    fn entries(&self, from: &[u32], via: &[i64]) -> Vec<Vec<u32>> {
-        let onto = |&f: &u32| {
-            let leaving = self.leaving_at(self.network.edges[f as usize].to_node).iter();
+    fn entries(&self, from: &[EdgeNo], via: &[i64]) -> Vec<Vec<EdgeNo>> {
+        let onto = |&f: &EdgeNo| {
+            let leaving = self.leaving_at(self.network.edges[f.index()].to_node).iter();
             leaving.filter(|&&edge| via.contains(&self.way(edge))).map(move |&edge| vec![f, edge])
         };
         from.iter().flat_map(onto).collect()
     }
 
     /// Whether a path uses a way that is no member.
-    fn leaves_members(&self, path: &[u32], restriction: &osm::Restriction, via: &[i64]) -> bool {
+    fn leaves_members(&self, path: &[EdgeNo], restriction: &osm::Restriction, via: &[i64]) -> bool {
         let member = |way: i64| [&restriction.from[..], via, &restriction.to].iter().any(|ways| ways.contains(&way));
         path.iter().any(|&edge| !member(self.way(edge)))
     }
@@ -352,14 +361,14 @@ impl Resolver<'_> {
     /// driven in one direction.
     fn follow(
         &self,
-        path: &mut Vec<u32>,
+        path: &mut Vec<EdgeNo>,
         steps: &mut usize,
         via: &[i64],
-        to: Option<&[u32]>,
-        paths: &mut Vec<Vec<u32>>,
+        to: Option<&[EdgeNo]>,
+        paths: &mut Vec<Vec<EdgeNo>>,
     ) {
         let Some(&last) = path.last() else { return };
-        let leaving = self.leaving_at(self.network.edges[last as usize].to_node);
+        let leaving = self.leaving_at(self.network.edges[last.index()].to_node);
         let Some((&way, rest)) = via.split_first() else {
             match to {
                 Some(to) => {
@@ -389,23 +398,23 @@ impl Resolver<'_> {
     }
 
     /// The next edge of the same way in the same direction.
-    fn along(&self, edge: u32) -> Option<u32> {
-        let e = &self.network.edges[edge as usize];
-        let goes_on = |&&other: &&u32| {
-            let o = &self.network.edges[other as usize];
+    fn along(&self, edge: EdgeNo) -> Option<EdgeNo> {
+        let e = &self.network.edges[edge.index()];
+        let goes_on = |&&other: &&EdgeNo| {
+            let o = &self.network.edges[other.index()];
             o.road == e.road && o.direction == e.direction && other != edge
         };
         self.leaving_at(e.to_node).iter().find(goes_on).copied()
     }
 
-    fn leaving_at(&self, node: i64) -> &[u32] {
+    fn leaving_at(&self, node: i64) -> &[EdgeNo] {
         self.leaving.at(self.network, node)
     }
 
-    fn arriving_at(&self, node: i64) -> &[u32] {
-        let to = |edge: &u32| self.network.edges[*edge as usize].to_node;
+    fn arriving_at(&self, node: i64) -> &[EdgeNo] {
+        let to = |edge: &EdgeNo| self.network.edges[edge.index()].to_node;
         let all = self.arriving.get_or_init(|| {
-            let mut all: Vec<u32> = (0..self.network.edges.len() as u32).collect();
+            let mut all: Vec<EdgeNo> = EdgeNo::first(self.network.edges.len()).collect();
             all.sort_by_key(to);
             all
         });
@@ -414,21 +423,21 @@ impl Resolver<'_> {
         &all[start..end]
     }
 
-    fn way(&self, edge: u32) -> i64 {
-        self.network.road(&self.network.edges[edge as usize]).way_id
+    fn way(&self, edge: EdgeNo) -> i64 {
+        self.network.road(&self.network.edges[edge.index()]).way_id
     }
 
-    fn edges_of(&self, way: i64) -> Range<u32> {
+    fn edges_of(&self, way: i64) -> Range<EdgeNo> {
         let edges = &self.network.edges;
         let id = |edge: &super::Edge| self.network.road(edge).way_id;
         let start = edges.partition_point(|edge| id(edge) < way);
         let end = start + edges[start..].partition_point(|edge| id(edge) == way);
-        start as u32..end as u32
+        EdgeNo::at(start)..EdgeNo::at(end)
     }
 }
 
 /// The edge into which `f` may go, if there is only one.
-fn alone(meant: &Meant, f: u32) -> Option<u32> {
+fn alone(meant: &Meant, f: EdgeNo) -> Option<EdgeNo> {
     let mut of_f = meant.pairs().iter().filter(|pair| pair.0 == f).map(|pair| pair.1);
     of_f.next().filter(|_| of_f.next().is_none())
 }
@@ -443,14 +452,14 @@ const MOST_STRAY: usize = 6;
 struct Wander<'w, 'n> {
     resolver: &'w Resolver<'n>,
     via: &'w [i64],
-    to: &'w [u32],
-    paths: Vec<Vec<u32>>,
+    to: &'w [EdgeNo],
+    paths: Vec<Vec<EdgeNo>>,
     steps: usize,
 }
 
 impl Wander<'_, '_> {
     /// Goes on from the end of `path`. `used` are the ways of `via` that it has been on, in order; it has `stray` edges of other ways.
-    fn on(&mut self, path: &mut Vec<u32>, used: &mut Vec<i64>, stray: usize) {
+    fn on(&mut self, path: &mut Vec<EdgeNo>, used: &mut Vec<i64>, stray: usize) {
         let Some(&last) = path.last() else { return };
         self.steps += 1;
         if path.len() > MOST_WANDERED || self.steps > MOST_STEPS || self.paths.len() > MOST_SEQUENCES {
@@ -458,7 +467,7 @@ impl Wander<'_, '_> {
         }
         let (resolver, network) = (self.resolver, self.resolver.network);
         let onward = Onward { network, leaving: resolver.leaving };
-        let end = network.edges[last as usize].to_node;
+        let end = network.edges[last.index()].to_node;
         for &next in resolver.leaving_at(end) {
             let way = resolver.way(next);
             if reverse(network, last, next) || path.contains(&next) {
@@ -472,7 +481,7 @@ impl Wander<'_, '_> {
             let new = self.via.contains(&way) && !used.contains(&way);
             // The rest of a road goes on from the last edge, or leads to a way that goes on from it.
             let leads = || {
-                let after = resolver.leaving_at(network.edges[next as usize].to_node).iter();
+                let after = resolver.leaving_at(network.edges[next.index()].to_node).iter();
                 after.into_iter().any(|&edge| self.via.contains(&resolver.way(edge)) && onward.goes_on(next, edge))
             };
             let strays = !self.via.contains(&way) && stray < MOST_STRAY && (onward.goes_on(last, next) || leads());
@@ -489,8 +498,8 @@ impl Wander<'_, '_> {
     }
 
     /// The path from the last edge before the `via` ways to the first edge after them.
-    fn cut(&self, path: &[u32]) -> Vec<u32> {
-        let on = |edge: &u32| self.via.contains(&self.resolver.way(*edge));
+    fn cut(&self, path: &[EdgeNo]) -> Vec<EdgeNo> {
+        let on = |edge: &EdgeNo| self.via.contains(&self.resolver.way(*edge));
         let first = path.iter().position(on).unwrap_or(1).saturating_sub(1);
         let last = path.iter().rposition(on).map_or(path.len(), |last| last + 2).min(path.len());
         path[first..last].to_vec()

@@ -6,7 +6,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{Network, Stroke};
+use super::{EdgeNo, Network, Stroke};
 
 /// If every arc is longer than this (metres), entering and leaving are two turns. Vehicles have at most 60 m, and
 /// entering and leaving take about 20 m of an arc each.
@@ -19,16 +19,16 @@ const MOST_ROUND_M: f64 = 10_000.0;
 
 /// A roundabout: its arcs in driving order, and the edges that enter and leave at the nodes where they start.
 struct Ring {
-    arcs: Vec<u32>,
+    arcs: Vec<EdgeNo>,
     closed: bool,
     /// One entry per node: the start of every arc, and the end of the last arc if the ring is not closed.
-    entries: Vec<Vec<u32>>,
-    exits: Vec<Vec<u32>>,
+    entries: Vec<Vec<EdgeNo>>,
+    exits: Vec<Vec<EdgeNo>>,
 }
 
 impl Network {
     /// All ways over roundabouts, by ring, entry and exit: the edge before, the arcs, and the edge after.
-    pub(super) fn over_rings(&self) -> Vec<(u32, Vec<u32>, u32)> {
+    pub(super) fn over_rings(&self) -> Vec<(EdgeNo, Vec<EdgeNo>, EdgeNo)> {
         let mut nodes = FxHashMap::default();
         let mut rings = Vec::new();
         for stroke in &self.strokes {
@@ -39,7 +39,7 @@ impl Network {
                 rings.push(ring);
             }
         }
-        for (index, edge) in (0_u32..).zip(&self.edges).filter(|(_, edge)| !self.road(edge).roundabout) {
+        for (index, edge) in self.numbered_edges().filter(|(_, edge)| !self.road(edge).roundabout) {
             if let Some(&(ring, place)) = nodes.get(&edge.to_node) {
                 rings[ring].entries[place].push(index);
             }
@@ -53,7 +53,7 @@ impl Network {
     /// The ring of a stroke and its nodes, if the stroke is a roundabout with an arc short enough for a vehicle.
     fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<i64>)> {
         let arcs = self.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize)?;
-        let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc as usize));
+        let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc.index()));
         if !edges().all(|edge| self.road(edge).roundabout) {
             return None;
         }
@@ -73,7 +73,7 @@ impl Network {
 
 impl Ring {
     /// The ways from every entry to every exit.
-    fn ways_over(&self) -> Vec<(u32, Vec<u32>, u32)> {
+    fn ways_over(&self) -> Vec<(EdgeNo, Vec<EdgeNo>, EdgeNo)> {
         let mut ways = Vec::new();
         for (place, entries) in self.entries.iter().enumerate() {
             for &from in entries {
@@ -86,12 +86,12 @@ impl Ring {
     }
 
     fn bounded(&self) -> bool {
-        let count = |ends: &[Vec<u32>]| ends.iter().map(Vec::len).sum::<usize>();
+        let count = |ends: &[Vec<EdgeNo>]| ends.iter().map(Vec::len).sum::<usize>();
         count(&self.entries) <= MOST_ARMS && count(&self.exits) <= MOST_ARMS
     }
 
     /// From the node at `place`: the arcs to every other node, and the edges that leave there.
-    fn ways_on(&self, place: usize) -> impl Iterator<Item = (Vec<u32>, &[u32])> {
+    fn ways_on(&self, place: usize) -> impl Iterator<Item = (Vec<EdgeNo>, &[EdgeNo])> {
         let n = self.arcs.len();
         let last = if self.closed { place + n - 1 } else { n };
         (place + 1..=last).filter_map(move |end| {

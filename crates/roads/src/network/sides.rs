@@ -3,7 +3,7 @@
 //! The value names a side (`no_left_turn`), and the roads have angles at the node. Where these do not decide, every reading applies.
 
 use super::geometry::chord_deg;
-use super::{Network, reverse};
+use super::{EdgeNo, Network, reverse};
 use crate::osm::facts::{RestrictedTurn, RestrictionKind};
 
 /// The length of road that gives a direction at a node, metres.
@@ -17,7 +17,7 @@ const STRAIGHT_DEG: f64 = 45.0;
 const U_TURN_DEG: f64 = 135.0;
 
 /// A movement over a node: the edge before it and the edge after it.
-pub(super) type Pair = (u32, u32);
+pub(super) type Pair = (EdgeNo, EdgeNo);
 
 /// The movements that a value means among those that its members allow.
 #[derive(Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Meant {
 }
 
 /// What a value means among the movements from the edges of one way into those of another one.
-pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[u32], to: &[u32]) -> Meant {
+pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[EdgeNo], to: &[EdgeNo]) -> Meant {
     let all = || from.iter().flat_map(|&f| to.iter().map(move |&t| (f, t)));
     let back = |pair: &Pair| reverse(network, pair.0, pair.1);
     let mut pairs: Vec<Pair> = match kind.turn {
@@ -62,7 +62,7 @@ pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[u32], to: 
 }
 
 fn same_way(network: &Network, (from, to): Pair) -> bool {
-    network.edges[from as usize].road == network.edges[to as usize].road
+    network.edges[from.index()].road == network.edges[to.index()].road
 }
 
 /// Whether a movement of this angle is one that the value names.
@@ -82,7 +82,7 @@ fn angle_deg(network: &Network, (from, to): Pair) -> f64 {
     if reverse(network, from, to) {
         return 180.0;
     }
-    let [from, to] = [from, to].map(|edge| &network.edges[edge as usize]);
+    let [from, to] = [from, to].map(|edge| &network.edges[edge.index()]);
     // A loop's chord must not span the whole loop.
     let reach_m = |edge: &super::Edge| REACH_M.min(network.length_m(edge) / 2.0);
     let back_deg = chord_deg(network.positions(from).rev(), reach_m(from));

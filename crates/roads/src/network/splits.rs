@@ -4,16 +4,16 @@
 //! is the middle of one. Both carriageways must exist. A road that merely becomes one-way is no split, because its lane
 //! may really end.
 
-use super::{Edge, Network, reverse};
+use super::{Edge, EdgeNo, Network, reverse};
 use crate::osm::facts::Oneway;
 
 /// Two-way edges at whose end or start the road parts.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Splits {
     /// Edges that end where the road parts; sorted.
-    ends: Vec<u32>,
+    ends: Vec<EdgeNo>,
     /// Edges that start where two carriageways have joined; sorted.
-    starts: Vec<u32>,
+    starts: Vec<EdgeNo>,
 }
 
 impl Splits {
@@ -37,17 +37,17 @@ impl Splits {
             edges.sort_unstable();
             edges.dedup();
         }
-        let other = |edge: u32| other_direction(network, edge);
-        let has = |edges: &[u32], edge: Option<u32>| edge.is_some_and(|edge| edges.binary_search(&edge).is_ok());
+        let other = |edge: EdgeNo| other_direction(network, edge);
+        let has = |edges: &[EdgeNo], edge: Option<EdgeNo>| edge.is_some_and(|edge| edges.binary_search(&edge).is_ok());
         let ends = found.ends.iter().copied().filter(|&edge| has(&found.starts, other(edge))).collect();
         let starts = found.starts.iter().copied().filter(|&edge| has(&found.ends, other(edge))).collect();
         Self { ends, starts }
     }
 
-    fn look_at(&mut self, network: &Network, from: u32, to: u32) {
+    fn look_at(&mut self, network: &Network, from: EdgeNo, to: EdgeNo) {
         // Buses that come against a one-way road make it no second carriageway.
         let with_traffic = |edge: &&Edge| !network.is_against_traffic(edge);
-        let road = |edge: u32| network.edges.get(edge as usize).filter(with_traffic).map(|edge| network.road(edge));
+        let road = |edge: EdgeNo| network.edges.get(edge.index()).filter(with_traffic).map(|edge| network.road(edge));
         let (Some(a), Some(b)) = (road(from), road(to)) else { return };
         if a.roundabout || b.roundabout {
             return;
@@ -61,20 +61,20 @@ impl Splits {
 
     /// Whether the two-way road of `edge` parts into two carriageways at the edge's end.
     #[must_use]
-    pub fn parts_after(&self, edge: u32) -> bool {
+    pub fn parts_after(&self, edge: EdgeNo) -> bool {
         self.ends.binary_search(&edge).is_ok()
     }
 
     /// Whether two carriageways join into the two-way road of `edge` at the edge's start.
     #[must_use]
-    pub fn joined_before(&self, edge: u32) -> bool {
+    pub fn joined_before(&self, edge: EdgeNo) -> bool {
         self.starts.binary_search(&edge).is_ok()
     }
 }
 
 /// The edge of the same piece of road in the other direction. The two are neighbours in a network.
-fn other_direction(network: &Network, edge: u32) -> Option<u32> {
-    let beside = [edge.checked_sub(1), edge.checked_add(1)];
-    let exists = |other: &u32| (*other as usize) < network.edges.len();
-    beside.into_iter().flatten().filter(exists).find(|&other| reverse(network, edge, other))
+fn other_direction(network: &Network, edge: EdgeNo) -> Option<EdgeNo> {
+    let beside = [edge.get().checked_sub(1), edge.get().checked_add(1)];
+    let exists = |other: &EdgeNo| other.index() < network.edges.len();
+    beside.into_iter().flatten().map(EdgeNo::new).filter(exists).find(|&other| reverse(network, edge, other))
 }

@@ -5,7 +5,7 @@
 
 use super::geometry::Geometry;
 use super::pairing::{NONE, Pairing};
-use super::{Network, Stroke};
+use super::{EdgeNo, Network, Stroke};
 
 /// Limits of straight continuations, and lengths of strokes and approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ pub(super) struct Chained {
     /// By stroke.
     pub(super) beginnings: Vec<Beginning>,
     /// Nodes with too many edges for any of them to be called straight on, by an edge that begins or ends there.
-    pub(super) crowded: Vec<u32>,
+    pub(super) crowded: Vec<EdgeNo>,
 }
 
 /// Fills `strokes` and `stroke_edges` of a network without strokes. Strokes are sorted by their first edge. A closed
@@ -88,7 +88,7 @@ pub(super) fn chain(network: &mut Network, options: &StrokeOptions) -> Chained {
             approach(&pairing, &geometry, options.approach_m, chain.first, &mut network.stroke_edges);
         }
         let first = network.stroke_edges.len() as u32;
-        let following = |&edge: &u32| Some(pairing.next[edge as usize]);
+        let following = |&edge: &EdgeNo| Some(pairing.next[edge.index()]);
         network.stroke_edges.extend(std::iter::successors(Some(chain.first), following).take(chain.edges as usize));
         let end = network.stroke_edges.len() as u32;
         network.strokes.push(Stroke { approach: start..first, edges: first..end, closed: chain.closed });
@@ -98,7 +98,7 @@ pub(super) fn chain(network: &mut Network, options: &StrokeOptions) -> Chained {
 
 /// A stroke before it is written out.
 struct Chain {
-    first: u32,
+    first: EdgeNo,
     edges: u32,
     closed: bool,
     /// Whether it begins because the previous one became too long.
@@ -115,15 +115,15 @@ struct Road<'n> {
 
 impl Road<'_> {
     fn chains(&self) -> Vec<Chain> {
-        let edges = self.pairing.next.len() as u32;
-        let mut done = vec![false; edges as usize];
+        let edges = self.pairing.next.len();
+        let mut done = vec![false; edges];
         let mut chains = Vec::new();
-        for first in (0..edges).filter(|&edge| self.begins(edge)) {
+        for first in EdgeNo::first(edges).filter(|&edge| self.begins(edge)) {
             self.follow(first, &mut done, &mut chains);
         }
         // The remaining edges form rings: the first edge found is the smallest of its ring.
-        for first in 0..edges {
-            if !done[first as usize] {
+        for first in EdgeNo::first(edges) {
+            if !done[first.index()] {
                 let strokes = chains.len();
                 self.follow(first, &mut done, &mut chains);
                 if let [ring] = &mut chains[strokes..] {
@@ -136,33 +136,33 @@ impl Road<'_> {
     }
 
     /// Whether a stroke begins with an edge: nothing continues into it, or what does is in another cell.
-    fn begins(&self, edge: u32) -> bool {
+    fn begins(&self, edge: EdgeNo) -> bool {
         !self.pairing.continues(edge) || self.comes_from_another_cell(edge)
     }
 
     /// Whether the edge that continues into an edge is in another cell. Rings are never cut.
-    fn comes_from_another_cell(&self, edge: u32) -> bool {
-        let edges = |edge: u32| &self.network.edges[edge as usize];
+    fn comes_from_another_cell(&self, edge: EdgeNo) -> bool {
+        let edges = |edge: EdgeNo| &self.network.edges[edge.index()];
         self.pairing.continues(edge)
             && !self.network.road(edges(edge)).roundabout
-            && self.network.cell(edges(self.pairing.before[edge as usize])) != self.network.cell(edges(edge))
+            && self.network.cell(edges(self.pairing.before[edge.index()])) != self.network.cell(edges(edge))
     }
 
     /// Follows the road from `first` to where another stroke begins or back to `first`, as one chain or as several of limited length.
-    fn follow(&self, first: u32, done: &mut [bool], chains: &mut Vec<Chain>) {
+    fn follow(&self, first: EdgeNo, done: &mut [bool], chains: &mut Vec<Chain>) {
         let mut chain = Chain { first, edges: 0, closed: false, split: false };
         let mut length_m = 0.0;
         let mut edge = first;
-        while edge != NONE && !done[edge as usize] && (edge == first || !self.begins(edge)) {
-            done[edge as usize] = true;
-            let edge_m = f64::from(self.geometry.length_m[edge as usize]);
+        while edge != NONE && !done[edge.index()] && (edge == first || !self.begins(edge)) {
+            done[edge.index()] = true;
+            let edge_m = f64::from(self.geometry.length_m[edge.index()]);
             if chain.edges > 0 && length_m + edge_m > self.max_length_m {
                 chains.push(std::mem::replace(&mut chain, Chain { first: edge, edges: 0, closed: false, split: true }));
                 length_m = 0.0;
             }
             chain.edges += 1;
             length_m += edge_m;
-            edge = self.pairing.next[edge as usize];
+            edge = self.pairing.next[edge.index()];
         }
         chains.push(chain);
     }
@@ -170,10 +170,10 @@ impl Road<'_> {
 
 /// Appends the edges that lead to `first`, in driving order. They go back along what continues into it, then along what
 /// a vehicle most plausibly comes from. They end when they are long enough or reach an edge already used.
-fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: u32, out: &mut Vec<u32>) {
+fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: EdgeNo, out: &mut Vec<EdgeNo>) {
     let start = out.len();
     let mut length_m = 0.0;
-    let mut edge = pairing.before[first as usize];
+    let mut edge = pairing.before[first.index()];
     while edge != NONE
         && edge != first
         && length_m < approach_m
@@ -181,8 +181,8 @@ fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: u32,
         && !out[start..].contains(&edge)
     {
         out.push(edge);
-        length_m += f64::from(geometry.length_m[edge as usize]);
-        edge = pairing.before[edge as usize];
+        length_m += f64::from(geometry.length_m[edge.index()]);
+        edge = pairing.before[edge.index()];
     }
     out[start..].reverse();
 }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use rustc_hash::FxHashSet;
 
-use super::{Edge, Network, Road};
+use super::{Edge, EdgeNo, Network, Road};
 use crate::osm::facts::{Oneway, RoadClass};
 use crate::words::Named as _;
 
@@ -20,23 +20,23 @@ const MOST_EDGES: usize = 200;
 
 /// The edges at each end of an unnamed road. They are found when a title is first asked for.
 #[derive(Debug, Clone, Default)]
-pub struct Ends(OnceLock<Vec<(i64, u32)>>);
+pub struct Ends(OnceLock<Vec<(i64, EdgeNo)>>);
 
 impl Ends {
     /// The edges that begin or end at a node.
-    fn at<'n>(&'n self, network: &Network, node: i64) -> impl Iterator<Item = u32> + 'n {
+    fn at<'n>(&'n self, network: &Network, node: i64) -> impl Iterator<Item = EdgeNo> + 'n {
         let all = self.0.get_or_init(|| Self::find(network));
         let first = all.partition_point(|end| end.0 < node);
         all.iter().skip(first).take_while(move |end| end.0 == node).map(|end| end.1)
     }
 
-    fn find(network: &Network) -> Vec<(i64, u32)> {
+    fn find(network: &Network) -> Vec<(i64, EdgeNo)> {
         let unnamed = network.edges.iter().filter(|edge| named(network.road(edge)).is_empty());
         let mut nodes: Vec<i64> = unnamed.flat_map(|edge| [edge.from_node, edge.to_node]).collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let ends = |(index, edge): (u32, &Edge)| [(edge.from_node, index), (edge.to_node, index)];
-        let mut all: Vec<(i64, u32)> = (0..).zip(&network.edges).flat_map(ends).collect();
+        let ends = |(index, edge): (EdgeNo, &Edge)| [(edge.from_node, index), (edge.to_node, index)];
+        let mut all: Vec<(i64, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
         all.retain(|end| nodes.binary_search(&end.0).is_ok());
         all.sort_unstable();
         all
@@ -93,9 +93,9 @@ impl Network {
                 continue;
             }
             closed.push(at);
-            let mut best: Option<(bool, RoadClass, u32)> = None;
+            let mut best: Option<(bool, RoadClass, EdgeNo)> = None;
             for index in self.ends.at(self, at) {
-                let Some(next) = self.edges.get(index as usize) else { continue };
+                let Some(next) = self.edges.get(index.index()) else { continue };
                 let (road, back) = (self.road(next), if end == End::From { End::To } else { End::From });
                 // Before an edge comes what ends there, and after it what begins there. A dead end leads back the way it came.
                 if seen.contains(&next.shape.start) || node(next, back) != at {
@@ -112,7 +112,7 @@ impl Network {
                 }
             }
             if let Some((.., index)) = best {
-                return self.edges.get(index as usize).map(|edge| self.short_name(self.road(edge)));
+                return self.edges.get(index.index()).map(|edge| self.short_name(self.road(edge)));
             }
         }
         None

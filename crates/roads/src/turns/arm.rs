@@ -7,7 +7,7 @@
 use super::path::{Pose, hermite};
 use super::{LengthClass, Opening};
 use crate::corridor::{Corridor, Frame, LaidOut, Params, Sections, StrokeCorridor};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{Policy, Strip};
 use crate::verdict::UnknownReason;
 
@@ -64,7 +64,7 @@ impl StrokeLine {
         let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
         for span in &made.spans {
-            let Some(edge) = network.edges.get(span.edge as usize) else { continue };
+            let Some(edge) = network.edges.get(span.edge.index()) else { continue };
             let section = sections(edge);
             for k in span.stations.clone() {
                 // A taper to the next edge narrows and moves the corridor, not the road.
@@ -191,7 +191,7 @@ impl Arm {
     /// The end of edge `edge` on `line`, with up to `before_m` and `after_m` of road.
     pub(super) fn arriving(
         line: &StrokeLine,
-        edge: u32,
+        edge: EdgeNo,
         frame: Frame,
         strip: Policy,
         reach_m: [f64; 2],
@@ -206,7 +206,7 @@ impl Arm {
     /// The start of edge `edge` on `line`.
     pub(super) fn leaving(
         line: &StrokeLine,
-        edge: u32,
+        edge: EdgeNo,
         frame: Frame,
         strip: Policy,
         reach_m: [f64; 2],

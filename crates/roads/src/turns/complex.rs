@@ -11,7 +11,7 @@ use super::arms::Arms;
 use super::crossing;
 use super::junction::Junction;
 use super::{LengthClass, TurnEdges, TurnParams};
-use crate::network::{Movement, MovementKind, Network};
+use crate::network::{EdgeNo, Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -29,13 +29,13 @@ impl Complex {
     pub(super) fn new<'l>(
         network: &Network,
         TurnEdges { movement, through }: TurnEdges<'_>,
-        line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
+        line: &dyn Fn(EdgeNo) -> Result<&'l StrokeLine, UnknownReason>,
         policy: Policy,
         params: &TurnParams,
         length_class: LengthClass,
     ) -> Result<Self, UnknownReason> {
         let frame = line(movement.from)?.made.frame;
-        let way: Vec<u32> = [&[movement.from], through, &[movement.to]].concat();
+        let way: Vec<EdgeNo> = [&[movement.from], through, &[movement.to]].concat();
         let mut turns = Vec::new();
         for &[from, to] in way.array_windows() {
             let lines = [line(from)?, line(to)?];
@@ -60,6 +60,6 @@ impl Complex {
 }
 
 /// Whether an edge's stroke goes on into another edge.
-fn goes_on(line: &StrokeLine, from: u32, to: u32) -> bool {
+fn goes_on(line: &StrokeLine, from: EdgeNo, to: EdgeNo) -> bool {
     line.made.spans.array_windows().any(|[a, b]| a.edge == from && b.edge == to)
 }

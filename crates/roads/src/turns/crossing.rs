@@ -12,7 +12,7 @@ use super::area::{ARC_STEP_RAD, CROSSING_M, Corner, along, polygon, rounded};
 use super::path::wrapped;
 use super::surface::surface;
 use crate::corridor::Frame;
-use crate::network::{Edge, Network, Road};
+use crate::network::{Edge, EdgeNo, Network, Road};
 
 /// Length of another road's mouth that bodies may overhang, from the node, metres. Parts that two roads share end there,
 /// too.
@@ -46,12 +46,12 @@ struct Mouth<'a> {
 /// The parts of the crossing at the end of the first of two edges, beside the strips of their roads.
 pub(super) fn parts(
     network: &Network,
-    own: [u32; 2],
+    own: [EdgeNo; 2],
     frame: Frame,
     params: &TurnParams,
     mapped: Option<&MultiPolygon>,
 ) -> Vec<Polygon> {
-    let Some(node) = network.edges.get(own[0] as usize).map(|edge| edge.to_node) else { return Vec::new() };
+    let Some(node) = network.edges.get(own[0].index()).map(|edge| edge.to_node) else { return Vec::new() };
     let mouths = mouths(network, node, &own, frame, params);
     if mouths.iter().any(|mouth| mouth.road.roundabout) {
         return Vec::new();
@@ -106,11 +106,11 @@ fn parts_of(
 }
 
 /// The parts of a crossing that two edges of one road pass. A node without another road has none.
-pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
-    let [Some(before), Some(after)] = own.map(|edge| network.edges.get(edge as usize)) else { return Vec::new() };
+pub(super) fn passed(network: &Network, own: [EdgeNo; 2], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
+    let [Some(before), Some(after)] = own.map(|edge| network.edges.get(edge.index())) else { return Vec::new() };
     let piece = |edge: &Edge| (edge.road, edge.shape.start);
-    let meets = |edge: &u32| {
-        let edge = network.edges.get(*edge as usize);
+    let meets = |edge: &EdgeNo| {
+        let edge = network.edges.get(edge.index());
         edge.is_some_and(|edge| ![piece(before), piece(after)].contains(&piece(edge)))
     };
     if !network.crossings.at(before.to_node).iter().any(meets) {
@@ -121,17 +121,17 @@ pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &Tu
 }
 
 /// The whole carriageway of edges inside a crossing, one part from each end. Edges are shorter than twice a mouth.
-pub(super) fn carriageways(network: &Network, edges: &[u32], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
-    let edges = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
+pub(super) fn carriageways(network: &Network, edges: &[EdgeNo], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
+    let edges = edges.iter().filter_map(|&edge| network.edges.get(edge.index()));
     let ends = edges.flat_map(|edge| [(edge, edge.from_node), (edge, edge.to_node)]);
     ends.filter_map(|(edge, node)| mouth(network, edge, node, frame, params)?.outline(MOUTH_M, 0.0)).collect()
 }
 
 /// The mouths around a node, counter-clockwise.
-fn mouths<'a>(network: &'a Network, node: i64, own: &[u32], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
-    let own: Vec<&Edge> = own.iter().filter_map(|&edge| network.edges.get(edge as usize)).collect();
+fn mouths<'a>(network: &'a Network, node: i64, own: &[EdgeNo], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
+    let own: Vec<&Edge> = own.iter().filter_map(|&edge| network.edges.get(edge.index())).collect();
     let mut pieces: Vec<&Edge> = Vec::new();
-    let edges = network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize));
+    let edges = network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge.index()));
     for edge in edges.filter(|edge| !network.is_against_traffic(edge)) {
         if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {
             pieces.push(edge);

@@ -5,7 +5,7 @@ use super::arms::{Arms, MEET_M};
 use super::junction::{JOIN_M, Junction, LEAVE_M};
 use super::{LengthClass, TurnCorridors};
 use crate::corridor::{Corridor, EdgeSpan, Frame, StrokeCorridor};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -57,8 +57,8 @@ enum Half {
 }
 
 /// The edge of one half of a road.
-fn edge(road: u32, half: Half) -> u32 {
-    2 * road + half as u32
+fn edge(road: u32, half: Half) -> EdgeNo {
+    EdgeNo::new(2 * road + half as u32)
 }
 
 /// A straight road through the origin.

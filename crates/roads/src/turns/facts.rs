@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 
 use super::area::CORNERS_RAD;
 use super::{Kerbs, path, surface};
-use crate::network::{Edge, Movement, MovementKind, Network, Passage, offset_m};
+use crate::network::{Edge, EdgeNo, Movement, MovementKind, Network, Passage, offset_m};
 use crate::osm::LonLat;
 
 /// Extent of a turn's line along both edges, metres. The turn's angle is measured over the same length.
@@ -50,7 +50,7 @@ pub struct TurnFacts {
     /// The edges before and after the turn. The edge after a passage starts at another node.
     pub movement: Movement,
     /// The edges between, in driving order, for a passage; otherwise empty.
-    pub through: Vec<u32>,
+    pub through: Vec<EdgeNo>,
     /// Angle of the turn, degrees, positive left.
     pub angle_deg: f64,
     /// Radius of the kerb on the inside, metres. `None` if the corner is too flat or too acute, or is mapped.
@@ -72,8 +72,8 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
     };
     let turns = turns.map(|&movement| (movement, Vec::new())).chain(network.passages().into_iter().map(passage));
     let mut taken = FxHashSet::default();
-    let mut with_id = |(movement, through): (Movement, Vec<u32>)| {
-        let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
+    let mut with_id = |(movement, through): (Movement, Vec<EdgeNo>)| {
+        let (from, to) = (network.edges.get(movement.from.index())?, network.edges.get(movement.to.index())?);
         let mut id = turn_id(from.id, to.id);
         while !taken.insert(id) {
             id = (id + 1) & i64::MAX;
@@ -87,7 +87,7 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
             let ends = [through.first(), through.last()];
-            let between = ends.map(|edge| edge.and_then(|&edge| network.edges.get(edge as usize)));
+            let between = ends.map(|edge| edge.and_then(|&edge| network.edges.get(edge.index())));
             // The radius of a corner, and whether it is surveyed; none if the corner is mapped.
             let corner = |node: i64, a: &Edge, b: &Edge| {
                 let roads = [network.road(a), network.road(b)];
@@ -124,12 +124,12 @@ fn turn_id(from: i64, to: i64) -> i64 {
     (word & i64::MAX).max(1)
 }
 
-fn line(network: &Network, movement: Movement, through: &[u32]) -> Option<Vec<LonLat>> {
-    let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
+fn line(network: &Network, movement: Movement, through: &[EdgeNo]) -> Option<Vec<LonLat>> {
+    let (from, to) = (network.edges.get(movement.from.index())?, network.edges.get(movement.to.index())?);
     let mut line = first_metres(network.positions(from).rev());
     line.reverse();
     for &arc in through {
-        line.extend(network.positions(network.edges.get(arc as usize)?).skip(1));
+        line.extend(network.positions(network.edges.get(arc.index())?).skip(1));
     }
     line.extend(first_metres(network.positions(to)).into_iter().skip(1));
     Some(line)

@@ -10,7 +10,7 @@ use super::arms::{Arms, MEET_M};
 use super::crossing::{MOST_NODES, parts, passed};
 use super::surface::{beside_the_map, surface};
 use crate::corridor::Frame;
-use crate::network::{Movement, Network};
+use crate::network::{EdgeNo, Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -45,7 +45,7 @@ impl Junction {
         params: &TurnParams,
         length_class: LengthClass,
     ) -> Result<Self, UnknownReason> {
-        let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
+        let edge = |index: EdgeNo| network.edges.get(index.index()).ok_or(UnknownReason::Geometry);
         let own = [edge(movement.from)?, edge(movement.to)?];
         let [from, to] = own.map(|edge| network.road(edge));
         let node = own[0].to_node;

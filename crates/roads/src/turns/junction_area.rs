@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::{KerbSource, TurnFacts, TurnParams, crossing, islands, surface};
 use crate::corridor::Frame;
-use crate::network::{Edge, Network, Road};
+use crate::network::{Edge, EdgeNo, Network, Road};
 use crate::osm::LonLat;
 
 /// Greatest distance of the outline from the true one, metres.
@@ -46,7 +46,7 @@ pub fn junction_nodes(network: &Network, turns: &[TurnFacts]) -> Vec<i64> {
 /// The nodes at which turns begin or end, with their positions, sorted by node.
 #[must_use]
 pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonLat)> {
-    let edge = |index: u32| network.edges.get(index as usize);
+    let edge = |index: EdgeNo| network.edges.get(index.index());
     let ends = |turn: &TurnFacts| {
         let first =
             edge(turn.movement.from).and_then(|edge| Some((edge.to_node, network.positions(edge).next_back()?)));
@@ -69,7 +69,7 @@ pub fn junction_areas(network: &Network, nodes: &[i64], params: &TurnParams) -> 
 /// cannot be drawn on the map.
 fn junction_area(network: &Network, node: i64, params: &TurnParams) -> Option<JunctionArea> {
     let edges: Vec<&Edge> =
-        network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize)).collect();
+        network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge.index())).collect();
     let first = edges.first()?;
     let mut line = network.positions(first);
     let place = if first.from_node == node { line.next() } else { line.next_back() }?;

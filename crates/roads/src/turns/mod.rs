@@ -67,7 +67,7 @@ pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 
 use crate::corridor::{AreaSpan, Corridor, Params};
-use crate::network::{Movement, Network, PassageKind};
+use crate::network::{EdgeNo, Movement, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -227,7 +227,7 @@ pub struct TurnEdges<'t> {
     /// The edges before and after it.
     pub movement: Movement,
     /// The edges between, in driving order, for a passage; otherwise empty.
-    pub through: &'t [u32],
+    pub through: &'t [EdgeNo],
 }
 
 impl TurnFacts {
@@ -275,14 +275,14 @@ fn on_lines_of(
 ) -> Result<TurnCorridors, UnknownReason> {
     let edges = [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied());
     let strokes = edges.map(|edge| Some((edge, stroke_of(network, edge)?)));
-    let strokes: Vec<(u32, u32)> = strokes.collect::<Option<_>>().ok_or(UnknownReason::Geometry)?;
+    let strokes: Vec<(EdgeNo, u32)> = strokes.collect::<Option<_>>().ok_or(UnknownReason::Geometry)?;
     let mut lines: Vec<StrokeLine> = Vec::new();
     for (_, stroke) in &strokes {
         if !lines.iter().any(|line| line.stroke == *stroke) {
             lines.push(StrokeLine::new(network, *stroke, policy, &params.corridor)?);
         }
     }
-    let line = |edge: u32| {
+    let line = |edge: EdgeNo| {
         let stroke = strokes.iter().find(|of| of.0 == edge).map(|of| of.1);
         lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
     };
@@ -299,7 +299,7 @@ fn on_lines_of(
 pub fn turn_on<'l>(
     network: &Network,
     turn: TurnEdges<'_>,
-    line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
+    line: &dyn Fn(EdgeNo) -> Result<&'l StrokeLine, UnknownReason>,
     policy: Policy,
     params: &TurnParams,
     length_class: LengthClass,
@@ -326,7 +326,7 @@ pub fn turn_on<'l>(
 }
 
 /// The stroke of an edge.
-fn stroke_of(network: &Network, edge: u32) -> Option<u32> {
+fn stroke_of(network: &Network, edge: EdgeNo) -> Option<u32> {
     let has = |s: &crate::network::Stroke| {
         network.stroke_edges.get(s.edges.start as usize..s.edges.end as usize).is_some_and(|all| all.contains(&edge))
     };

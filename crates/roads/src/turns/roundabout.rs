@@ -16,7 +16,7 @@ use super::junction::Junction;
 use super::path::{STEP_M, hermite};
 use super::{LengthClass, TurnEdges, TurnParams};
 use crate::corridor::Frame;
-use crate::network::{Movement, MovementKind, Network};
+use crate::network::{EdgeNo, Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -50,14 +50,14 @@ impl Passage {
         let (Some(&first), Some(&last)) = (through.first(), through.last()) else {
             return Err(UnknownReason::Geometry);
         };
-        let place = |arc: u32| ring.made.spans.iter().position(|s| s.edge == arc).ok_or(UnknownReason::Geometry);
+        let place = |arc: EdgeNo| ring.made.spans.iter().position(|s| s.edge == arc).ok_or(UnknownReason::Geometry);
         for &arc in through {
             if let Some(reason) = ring.made.spans[place(arc)?].unknown {
                 return Err(reason);
             }
         }
         let frame = from.made.frame;
-        let junction = |from: u32, to: u32, lines: [&StrokeLine; 2]| {
+        let junction = |from: EdgeNo, to: EdgeNo, lines: [&StrokeLine; 2]| {
             let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
             Junction::new(network, movement, lines, frame, policy, params, length_class)
         };

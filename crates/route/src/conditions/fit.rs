@@ -20,7 +20,7 @@ use crate::assemble::{PartKind, Way};
 use crate::drive::Drive;
 use crate::driver::Driver;
 use crate::graph::Access;
-use crate::network::{self, Network};
+use crate::network::{self, EdgeNo, Network};
 use crate::obstacles::Refutation;
 use crate::pieces::Choices;
 use crate::roads::Roads;
@@ -37,7 +37,7 @@ pub(crate) struct Fitter {
     pub(super) base: Arc<network::Site>,
     pub(super) stroke_of: Arc<[u32]>,
     /// The widths that edges need.
-    pub(super) needs_m: FxHashMap<u32, Option<f64>>,
+    pub(super) needs_m: FxHashMap<EdgeNo, Option<f64>>,
     /// What turns need; `None` if nothing does.
     pub(super) turns: FxHashMap<TurnKey, Option<Suppositions>>,
     /// Sections with what their edges and turns need by themselves, with enough to be safe, and with the least that was found for it.
@@ -51,7 +51,7 @@ pub(crate) struct Fitter {
 }
 
 /// The edges of a section, the arcs of its passages, its ends, and which edges and steps have a price.
-type SectionKey = (Vec<u32>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
+type SectionKey = (Vec<EdgeNo>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
 
 /// A way that is certified if everything supposed holds.
 pub(crate) struct Fitted {
@@ -262,7 +262,7 @@ impl Fitter {
     /// Everything that decides what a section needs.
     fn section_key(&self, section: &Section, access: &Access) -> SectionKey {
         let Section { drive, start, end, .. } = section;
-        let edges = drive.edges.iter().map(|&edge| access.edges.get(edge as usize).is_none_or(|&price| price > 0));
+        let edges = drive.edges.iter().map(|&edge| access.edges.get(edge.index()).is_none_or(|&price| price > 0));
         let priced = edges.chain(drive.joins().map(|join| self.price(access, join) > 0)).collect();
         (drive.edges.clone(), drive.over.clone(), [start.to_bits(), end.to_bits()], priced)
     }

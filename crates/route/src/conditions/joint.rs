@@ -2,7 +2,7 @@
 
 use crate::assemble::{PartKind, movement};
 use crate::drive::Drive;
-use crate::network::{MovementKind, Movements, Network};
+use crate::network::{EdgeNo, MovementKind, Movements, Network};
 
 /// The greatest length of the edges inside a passage that is made of turns, metres. A lorry that stands on them stands on both turns.
 const MOST_INSIDE_M: f64 = 80.0;
@@ -14,14 +14,14 @@ pub(super) fn merged(
     movements: &Movements,
     drive: &Drive,
     at: PartKind,
-) -> Option<(Drive, (u32, u32))> {
+) -> Option<(Drive, (EdgeNo, EdgeNo))> {
     let PartKind::Turn { from, to } = at else { return None };
     let turns = turns(movements, drive);
     let own = turns.iter().position(|&[a, b]| (drive.edges[a], drive.edges[b]) == (from, to))?;
     let spans = own.checked_sub(1).map(|before| [turns[before][0], turns[own][1]]);
     let spans = spans.into_iter().chain(turns.get(own + 1).map(|after| [turns[own][0], after[1]]));
     let length_m = |[a, b]: [usize; 2]| {
-        let inside = drive.edges[a + 1..b].iter().map(|&edge| network.edges.get(edge as usize));
+        let inside = drive.edges[a + 1..b].iter().map(|&edge| network.edges.get(edge.index()));
         inside
             .map(|edge| edge.filter(|edge| !network.road(edge).roundabout))
             .try_fold(0.0, |sum, edge| Some(sum + network.length_m(edge?)))

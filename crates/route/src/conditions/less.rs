@@ -7,6 +7,7 @@ use super::fit::{Fitter, Fitting, network_of};
 use super::suppositions::Suppositions;
 use super::{Condition, ConditionAt};
 use crate::graph::Access;
+use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
 
 /// How often at most something is taken back from a section.
@@ -18,7 +19,7 @@ impl Fitter {
         self.level(fitting, stop)?;
         let mut conditions = self.conditions(fitting);
         // An edge with a price is not safe without its width.
-        let priced = |edge: &u32| access.edges.get(*edge as usize).is_some_and(|&price| price > 0);
+        let priced = |edge: &EdgeNo| access.edges.get(edge.index()).is_some_and(|&price| price > 0);
         let own = |condition: &Condition| matches!(&condition.at, ConditionAt::Road(edges) if edges.iter().any(priced));
         let beside = |condition: &&Condition| matches!(condition.at, ConditionAt::Road(_)) && !own(condition);
         if conditions.iter().filter(beside).count() > 1 {

@@ -4,14 +4,14 @@
 use std::collections::BTreeMap;
 
 use super::suppositions::Suppositions;
-use crate::network::{Network, Road};
+use crate::network::{EdgeNo, Network, Road};
 use crate::osm::facts::Policy;
 
 /// Widths of one road that differ by no more than this become one condition, metres.
 const LEVEL_M: f64 = 0.5;
 
 /// The number of the road of each edge of a way. A road ends where the way leaves it; the same road further on has another number.
-pub(super) fn roads(network: &Network, way: &[u32]) -> Vec<usize> {
+pub(super) fn roads(network: &Network, way: &[EdgeNo]) -> Vec<usize> {
     let strokes = network.strokes_of_edges();
     let mut road = 0;
     let mut numbers = Vec::with_capacity(way.len());
@@ -23,9 +23,9 @@ pub(super) fn roads(network: &Network, way: &[u32]) -> Vec<usize> {
 }
 
 /// Whether an edge belongs to the road of the edge before it: the same way, name or reference, or straight on.
-fn goes_on(network: &Network, strokes: &[u32], a: u32, b: u32) -> bool {
-    let stroke = |edge: u32| strokes.get(edge as usize).filter(|&&stroke| stroke != u32::MAX);
-    let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
+fn goes_on(network: &Network, strokes: &[u32], a: EdgeNo, b: EdgeNo) -> bool {
+    let stroke = |edge: EdgeNo| strokes.get(edge.index()).filter(|&&stroke| stroke != u32::MAX);
+    let road = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.road(edge));
     let same = |a: &Road, b: &Road| {
         let name = a.name.is_some() && a.name == b.name;
         let reference = a.reference.is_some() && a.reference == b.reference;
@@ -37,9 +37,9 @@ fn goes_on(network: &Network, strokes: &[u32], a: u32, b: u32) -> bool {
 impl Suppositions {
     /// Gives edges of one road of a way the greatest of their widths, if these differ little. A lane that is all of its direction is
     /// measured as a lane.
-    pub(crate) fn level_roads(&mut self, network: &Network, way: &[u32]) {
+    pub(crate) fn level_roads(&mut self, network: &Network, way: &[EdgeNo]) {
         self.level_directions(network, way);
-        let mut of_road: BTreeMap<(usize, Policy), Vec<(u32, f64)>> = BTreeMap::new();
+        let mut of_road: BTreeMap<(usize, Policy), Vec<(EdgeNo, f64)>> = BTreeMap::new();
         for (&edge, road) in way.iter().zip(roads(network, way)) {
             for (&(_, strip), &width_m) in self.widths_m.range((edge, Policy::Lane)..=(edge, Policy::Carriageway)) {
                 of_road.entry((road, strip)).or_default().push((edge, width_m));
@@ -58,7 +58,7 @@ impl Suppositions {
     }
 
     /// Supposes widths of lanes instead of directions where both are the same strip, if lanes are what counts on this way.
-    fn level_directions(&mut self, network: &Network, way: &[u32]) {
+    fn level_directions(&mut self, network: &Network, way: &[EdgeNo]) {
         if !self.widths_m.keys().any(|(_, strip)| *strip == Policy::Lane) {
             return;
         }

@@ -35,7 +35,7 @@ pub(super) use turn_need::Turning;
 use super::route::Route;
 use super::snap::Snapped;
 use crate::evidence::Quantity;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 
 /// A route that is certified if all conditions hold.
@@ -69,13 +69,13 @@ pub struct Condition {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ConditionAt {
     /// Along edges of one road, in driving order.
-    Road(Vec<u32>),
+    Road(Vec<EdgeNo>),
     /// At the corner between an edge that ends and one that begins at a node.
     Corner {
         /// OSM node id.
         node: i64,
         /// The two edges.
-        between: [u32; 2],
+        between: [EdgeNo; 2],
     },
     /// Around an OSM node: everything is paved, without kerbs and islands, up to the needed distance from it.
     Junction(i64),
@@ -88,7 +88,7 @@ impl Condition {
         match &self.at {
             ConditionAt::Road(edges) => edges
                 .iter()
-                .filter_map(|&edge| network.edges.get(edge as usize))
+                .filter_map(|&edge| network.edges.get(edge.index()))
                 .map(|edge| network.length_m(edge))
                 .sum(),
             ConditionAt::Corner { .. } | ConditionAt::Junction(_) => 0.0,

@@ -9,7 +9,7 @@ use crate::assemble::{PartKind, movement};
 use crate::certify::edge_need;
 use crate::drive::{Drive, Join};
 use crate::graph::Access;
-use crate::network::MovementKind;
+use crate::network::{EdgeNo, MovementKind};
 use crate::osm::facts::Policy;
 use crate::stop::{Stop, Stopped};
 
@@ -17,7 +17,7 @@ use crate::stop::{Stop, Stopped};
 pub(crate) const BESIDE_M: f64 = 20.0;
 
 /// The edges of a turn, with the widths of the roads beside it in centimetres.
-pub(super) type TurnKey = (Vec<u32>, Vec<i64>);
+pub(super) type TurnKey = (Vec<EdgeNo>, Vec<i64>);
 
 /// What becomes of a step of a way.
 enum Step {
@@ -42,12 +42,12 @@ impl Fitter {
         fitting.supposed.apply(network_of(&mut self.roads));
         for (i, edge) in fitting.drive.edges.clone().into_iter().enumerate() {
             let inside = fitting.drive.over.iter().any(|arcs| arcs.contains(&i));
-            if inside || access.edges.get(edge as usize).is_none_or(|&price| price == 0) {
+            if inside || access.edges.get(edge.index()).is_none_or(|&price| price == 0) {
                 continue;
             }
             stop.check()?;
             let (network, driver) = (&self.roads.network, &self.driver);
-            let stroke = self.stroke_of.get(edge as usize).copied().unwrap_or(u32::MAX);
+            let stroke = self.stroke_of.get(edge.index()).copied().unwrap_or(u32::MAX);
             let need = || edge_need(network, stroke, edge, &driver.model, &driver.permits.settings);
             match *self.needs_m.entry(edge).or_insert_with(need) {
                 Some(need_m) => {
@@ -65,16 +65,16 @@ impl Fitter {
         let reach_m = self.driver.model.vehicle.length_m + BESIDE_M;
         let Fitting { drive, supposed, .. } = fitting;
         let edges = &drive.edges;
-        let stroke = |edge: u32| self.stroke_of.get(edge as usize);
+        let stroke = |edge: EdgeNo| self.stroke_of.get(edge.index());
         let mut more = supposed.widen(network, edges[at], strip, width_m);
-        let mut go = |others: &mut dyn Iterator<Item = u32>| {
+        let mut go = |others: &mut dyn Iterator<Item = EdgeNo>| {
             let mut far_m = 0.0;
             for edge in others.take_while(|&edge| stroke(edge) == stroke(edges[at])) {
                 if far_m >= reach_m {
                     break;
                 }
                 more |= supposed.widen(network, edge, strip, width_m);
-                far_m += network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
+                far_m += network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
             }
         };
         go(&mut edges[..at].iter().rev().copied());

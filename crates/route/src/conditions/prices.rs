@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::graph::{Access, BARRED};
-use crate::network::{Movements, Network};
+use crate::network::{EdgeNo, Movements, Network};
 use crate::obstacles::{self, CENTIMETRE, Refutation};
 use crate::permits::{Permit, Permits};
 use crate::roads::Roads;
@@ -51,13 +51,13 @@ fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access
             network.site.section(edge).is_some() || nodes.contains(&edge.from_node) || nodes.contains(&edge.to_node)
         })
         .collect();
-    let near = |edge: u32| measured.get(edge as usize).is_some_and(|&measured| measured);
+    let near = |edge: EdgeNo| measured.get(edge.index()).is_some_and(|&measured| measured);
     let cheaper = |price: &mut u64| {
         if *price != BARRED && *price > 0 {
             *price = (*price / MEASURED_SHARE).max(1);
         }
     };
-    (0..).zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+    EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
     let turns = movements.all().iter().zip(&mut access.movements);
     turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
     let passages = movements.passages().iter().zip(&mut access.passages);
@@ -69,10 +69,10 @@ fn price(cm: f64) -> u64 {
 }
 
 /// The price of an edge that is not safe: a measure of what has to be measured there, and of how much is missing.
-pub(crate) fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
+pub(crate) fn edge_price(network: &Network, edge: EdgeNo, permit: &Permit) -> u64 {
     match (permit.verdict, permit.rsc_m) {
         (Verdict::Unsafe(UnsafeReason::Width), Some(rsc_m)) if rsc_m.is_finite() => {
-            let length_m = network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
+            let length_m = network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
             price(EDGE_CM + EDGE_CM_PER_M * length_m + 200.0 * (-rsc_m).max(0.0))
         }
         _ => BARRED,

@@ -6,7 +6,7 @@ use super::suppositions::disc;
 use super::{Condition, ConditionAt};
 use crate::assemble::PartKind;
 use crate::evidence::Quantity;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::{LonLat, rounded};
 use crate::title::title as title_of;
 use crate::words::Named as _;
@@ -52,7 +52,7 @@ impl Condition {
                 title_of(network, PartKind::Turn { from: *from, to: *to })
             }
             ConditionAt::Junction(node) => {
-                let edges: Vec<u32> = network.crossings.at(*node).to_vec();
+                let edges: Vec<EdgeNo> = network.crossings.at(*node).to_vec();
                 let mut titles: Vec<String> =
                     edges.iter().map(|&edge| title_of(network, PartKind::Edge(edge))).collect();
                 titles.sort();
@@ -90,7 +90,7 @@ impl Condition {
     fn position(&self, network: &Network) -> Option<LonLat> {
         match &self.at {
             ConditionAt::Road(edges) => {
-                let edge = network.edges.get(*edges.get(edges.len() / 2)? as usize)?;
+                let edge = network.edges.get(edges.get(edges.len() / 2)?.index())?;
                 let line: Vec<LonLat> = network.positions(edge).collect();
                 let middle = line.len() / 2;
                 match (line.get(middle.checked_sub(1)?), line.get(middle)) {
@@ -102,7 +102,7 @@ impl Condition {
                 }
             }
             ConditionAt::Corner { between: [from, _], .. } => {
-                network.positions(network.edges.get(*from as usize)?).next_back()
+                network.positions(network.edges.get(from.index())?).next_back()
             }
             ConditionAt::Junction(node) => node_position(network, *node),
         }
@@ -111,7 +111,7 @@ impl Condition {
     /// The members of the condition, numbered from 1.
     #[must_use]
     pub fn members(&self, network: &Network, number: usize) -> Value {
-        let id = |edge: u32| network.edges.get(edge as usize).map(|edge| edge.id);
+        let id = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| edge.id);
         let mut members = json!({
             "number": number,
             "kind": self.quantity.name(),
@@ -141,7 +141,7 @@ impl Condition {
     /// filled in is empty.
     #[must_use]
     pub fn sheet(&self, network: &Network, number: usize) -> Vec<[String; 16]> {
-        let id = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| edge.id.to_string());
+        let id = |edge: EdgeNo| network.edges.get(edge.index()).map_or_else(String::new, |edge| edge.id.to_string());
         let row = |label: String, [edge, junction, from, to]: [String; 4], geometry: String| {
             let unit = if self.quantity == Quantity::Surface { "" } else { "m" };
             [
@@ -166,7 +166,7 @@ impl Condition {
         let none = String::new;
         match &self.at {
             ConditionAt::Road(edges) => {
-                let one = |(i, &edge): (usize, &u32)| {
+                let one = |(i, &edge): (usize, &EdgeNo)| {
                     let label = if edges.len() > 1 { format!("{number}.{}", i + 1) } else { number.to_string() };
                     row(label, [id(edge), none(), none(), none()], none())
                 };
@@ -186,7 +186,7 @@ impl Condition {
 }
 
 fn node_position(network: &Network, node: i64) -> Option<LonLat> {
-    let edge = network.crossings.at(node).iter().find_map(|&edge| network.edges.get(edge as usize))?;
+    let edge = network.crossings.at(node).iter().find_map(|&edge| network.edges.get(edge.index()))?;
     let mut line = network.positions(edge);
     if edge.from_node == node { line.next() } else { line.next_back() }
 }

@@ -79,7 +79,7 @@ impl DrivenEdge {
         let edges = &way.drive.edges;
         let start = if at == 0 { way.start } else { 0.0 };
         let end = if at + 1 == edges.len() { way.end } else { 1.0 };
-        let edge_m = network.edges.get(edges[at] as usize).map_or(0.0, |edge| network.length_m(edge));
+        let edge_m = network.edges.get(edges[at].index()).map_or(0.0, |edge| network.length_m(edge));
         Self { at, shares: [start, end], edge_m }
     }
 

@@ -30,7 +30,7 @@ impl Fitter {
         let mut fitting = Fitting::new(&self.base, &section.way());
         let mut unfit = Vec::new();
         // Turns that are not safe by themselves may pass as parts of the whole.
-        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
+        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge.index()) == Some(&0));
         if !(roomy && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe())) {
             unfit.extend(self.suppose_widths(&mut fitting, access, stop)?);
             unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);

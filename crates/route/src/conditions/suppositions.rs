@@ -10,7 +10,7 @@ use super::turn_need::PAVED_M;
 use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
-use crate::network::{self, Edge, Network};
+use crate::network::{self, Edge, EdgeNo, Network};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Policy, WidthSource};
 use crate::turns::Kerbs;
@@ -30,9 +30,9 @@ pub(crate) struct Suppositions {
     /// What is known of places anyway.
     base: Arc<network::Site>,
     /// By edge and strip, metres.
-    pub(super) widths_m: BTreeMap<(u32, Policy), f64>,
+    pub(super) widths_m: BTreeMap<(EdgeNo, Policy), f64>,
     /// By node, edge that ends and edge that begins there, metres.
-    kerbs_m: BTreeMap<(i64, [u32; 2]), f64>,
+    kerbs_m: BTreeMap<(i64, [EdgeNo; 2]), f64>,
     /// By node: the position of the node, and how far around it everything is paved, metres.
     paved_m: BTreeMap<i64, (LonLat, f64)>,
 }
@@ -44,7 +44,7 @@ impl Suppositions {
     }
 
     /// Supposes that an edge's strip is at least so wide. Returns whether that is more than before.
-    pub(crate) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
+    pub(crate) fn widen(&mut self, network: &Network, edge: EdgeNo, strip: Policy, width_m: f64) -> bool {
         let width_m = in_steps(width_m);
         if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m - ROUNDING_M) {
             return false;
@@ -54,13 +54,13 @@ impl Suppositions {
     }
 
     /// The width of an edge's strip under the suppositions, metres. `None` if it is not known at all.
-    pub(crate) fn width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
+    pub(crate) fn width_m(&self, network: &Network, edge: EdgeNo, strip: Policy) -> Option<f64> {
         let supposed_m = self.widths_m.get(&(edge, strip)).copied();
         supposed_m.or_else(|| self.known_width_m(network, edge, strip))
     }
 
     /// Supposes that a corner has at least this radius.
-    pub(crate) fn round(&mut self, node: i64, between: [u32; 2], radius_m: f64) {
+    pub(crate) fn round(&mut self, node: i64, between: [EdgeNo; 2], radius_m: f64) {
         let radius_m = (radius_m * RADII - 1e-6).ceil() / RADII;
         let known_m = self.kerbs_m.entry((node, between)).or_insert(radius_m);
         *known_m = known_m.max(radius_m);
@@ -78,13 +78,13 @@ impl Suppositions {
     }
 
     /// The radius supposed for a corner, metres.
-    pub(crate) fn radius_m(&self, node: i64, between: [u32; 2]) -> Option<f64> {
+    pub(crate) fn radius_m(&self, node: i64, between: [EdgeNo; 2]) -> Option<f64> {
         self.kerbs_m.get(&(node, between)).copied()
     }
 
     /// The width of an edge's strip without the suppositions, metres.
-    pub(crate) fn known_width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
-        let edge = network.edges.get(edge as usize)?;
+    pub(crate) fn known_width_m(&self, network: &Network, edge: EdgeNo, strip: Policy) -> Option<f64> {
+        let edge = network.edges.get(edge.index())?;
         let section = self.base.section(edge).unwrap_or_else(|| network.mapped_section(edge));
         Some(f64::from(section.strip(strip)?.width_m()))
     }
@@ -102,11 +102,11 @@ impl Suppositions {
             while let Some((&(_, strip), &width_m)) = widths_m.next_if(|((other, _), _)| *other == edge) {
                 of_edge[strip as usize] = Some(width_m);
             }
-            let Some(edge) = network.edges.get(edge as usize) else { continue };
+            let Some(edge) = network.edges.get(edge.index()) else { continue };
             site.set_section(edge, self.section(network, edge, of_edge));
         }
         for (&(node, [from, to]), &radius_m) in &self.kerbs_m {
-            if let (Some(from), Some(to)) = (network.edges.get(from as usize), network.edges.get(to as usize)) {
+            if let (Some(from), Some(to)) = (network.edges.get(from.index()), network.edges.get(to.index())) {
                 site.set_kerb(node, Some([from, to]), radius_m);
             }
         }
@@ -134,7 +134,7 @@ impl Suppositions {
     }
 
     /// The widths alone that are supposed for some edges.
-    pub(super) fn widths_of(&self, edges: &[u32]) -> Self {
+    pub(super) fn widths_of(&self, edges: &[EdgeNo]) -> Self {
         let mut own = Self::new(Arc::clone(&self.base));
         own.widths_m =
             self.widths_m.iter().filter(|((edge, _), _)| edges.contains(edge)).map(|(k, v)| (*k, *v)).collect();
@@ -215,8 +215,8 @@ impl Suppositions {
 
     /// Gives both ways round a corner the greater of their radii: there is one kerb.
     pub(crate) fn level_corners(&mut self, network: &Network) {
-        let kerb = |&(node, between): &(i64, [u32; 2])| {
-            let [from, to] = between.map(|edge| network.edges.get(edge as usize));
+        let kerb = |&(node, between): &(i64, [EdgeNo; 2])| {
+            let [from, to] = between.map(|edge| network.edges.get(edge.index()));
             Some((node, network::pieces([from?, to?])))
         };
         let mut most: BTreeMap<_, f64> = BTreeMap::new();
@@ -237,13 +237,13 @@ impl Suppositions {
     }
 
     /// The edges whose widths differ from other suppositions.
-    pub(crate) fn differing_edges(&self, other: &Self) -> FxHashSet<u32> {
+    pub(crate) fn differing_edges(&self, other: &Self) -> FxHashSet<EdgeNo> {
         differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect()
     }
 
     /// The positions of the nodes at which something else than a width differs from other suppositions.
     pub(super) fn differing_nodes(&self, other: &Self, network: &Network) -> Vec<LonLat> {
-        let end = |edge: u32| network.edges.get(edge as usize).and_then(|edge| network.positions(edge).next_back());
+        let end = |edge: EdgeNo| network.edges.get(edge.index()).and_then(|edge| network.positions(edge).next_back());
         let corners = differing(&self.kerbs_m, &other.kerbs_m).filter_map(|(_, [from, _])| end(from));
         let paved = differing(&self.paved_m, &other.paved_m);
         let paved = paved.filter_map(|node| self.paved_m.get(&node).or(other.paved_m.get(&node)).map(|paved| paved.0));
@@ -252,7 +252,7 @@ impl Suppositions {
 
     /// The conditions in the order of a way, on a network on which nothing is supposed. Edges of one road that need the same are one
     /// condition, also where edges between them need nothing.
-    pub(crate) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
+    pub(crate) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[EdgeNo]) -> Vec<Condition> {
         let mut found: Vec<(usize, Condition)> = Vec::new();
         // By road, strip and width: the place of its condition.
         let mut of_road: BTreeMap<(usize, Policy, u64), usize> = BTreeMap::new();
@@ -276,7 +276,7 @@ impl Suppositions {
             }
         }
         for (&(node, between), &needed_m) in &self.kerbs_m {
-            let edges = between.map(|edge| network.edges.get(edge as usize));
+            let edges = between.map(|edge| network.edges.get(edge.index()));
             let [Some(from), Some(to)] = edges else { continue };
             let assumed_m = kerbs.at(network, node, [from, to]);
             let place = way.iter().position(|edge| between.contains(edge)).unwrap_or(way.len());
@@ -284,7 +284,7 @@ impl Suppositions {
             found.push((place, Condition { quantity: Quantity::KerbRadius, at, assumed_m: Some(assumed_m), needed_m }));
         }
         for (&node, &(_, needed_m)) in &self.paved_m {
-            let meets = |edge: &u32| network.edges.get(*edge as usize).is_some_and(|edge| edge.to_node == node);
+            let meets = |edge: &EdgeNo| network.edges.get(edge.index()).is_some_and(|edge| edge.to_node == node);
             let place = way.iter().position(meets).unwrap_or(way.len());
             let at = ConditionAt::Junction(node);
             found.push((place, Condition { quantity: Quantity::Surface, at, assumed_m: None, needed_m }));

@@ -6,7 +6,7 @@ use super::suppositions::Suppositions;
 use crate::certify::{KERBS_M, best_of, fits, flares, least_of};
 use crate::drive::{Drive, Join};
 use crate::driver::Driver;
-use crate::network::{Movement, Network};
+use crate::network::{EdgeNo, Movement, Network};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
@@ -41,10 +41,10 @@ enum Look {
 
 impl Turning<'_> {
     /// The corners of the turn: node, edge that ends, edge that begins there.
-    pub(crate) fn corners(&self, network: &Network) -> Vec<(i64, [u32; 2])> {
+    pub(crate) fn corners(&self, network: &Network) -> Vec<(i64, [EdgeNo; 2])> {
         let Join { from, arcs, to, .. } = self.join;
-        let node = |edge: u32, end: bool| {
-            network.edges.get(edge as usize).map_or(0, |edge| if end { edge.to_node } else { edge.from_node })
+        let node = |edge: EdgeNo, end: bool| {
+            network.edges.get(edge.index()).map_or(0, |edge| if end { edge.to_node } else { edge.from_node })
         };
         match (arcs.first(), arcs.last()) {
             (Some(&first), Some(&last)) => vec![(node(from, true), [from, first]), (node(to, false), [last, to])],
@@ -53,12 +53,12 @@ impl Turning<'_> {
     }
 
     /// The edges of the way before and after the turn on which its corridor lies.
-    pub(crate) fn near(&self, network: &Network) -> Vec<u32> {
+    pub(crate) fn near(&self, network: &Network) -> Vec<EdgeNo> {
         let Some(reach) = LengthClass::of(&self.driver.model.vehicle) else { return Vec::new() };
         let edges = &self.drive.edges;
-        let stroke = |edge: u32| self.stroke_of.get(edge as usize);
-        let length_m = |edge: u32| network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
-        let within = |found: &mut Vec<u32>, all: &mut dyn Iterator<Item = u32>, most_m: f64, of: u32| {
+        let stroke = |edge: EdgeNo| self.stroke_of.get(edge.index());
+        let length_m = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
+        let within = |found: &mut Vec<EdgeNo>, all: &mut dyn Iterator<Item = EdgeNo>, most_m: f64, of: EdgeNo| {
             let mut sum_m = 0.0;
             for edge in all.take_while(|&edge| stroke(edge) == stroke(of)) {
                 found.push(edge);
@@ -84,7 +84,7 @@ impl Turning<'_> {
     pub(crate) fn widths_cm(&self, network: &Network, supposed: &Suppositions) -> Vec<i64> {
         let policies = [self.settings().policy, self.strip()];
         let width =
-            |edge: u32, strip: Policy| supposed.width_m(network, edge, strip).map_or(-1, |m| (100.0 * m) as i64);
+            |edge: EdgeNo, strip: Policy| supposed.width_m(network, edge, strip).map_or(-1, |m| (100.0 * m) as i64);
         self.near(network).into_iter().flat_map(|edge| policies.map(|strip| width(edge, strip))).collect()
     }
 
@@ -111,13 +111,13 @@ impl Turning<'_> {
         let driven = [self.join.from, self.join.to].into_iter().chain(self.join.arcs.iter().copied());
         let mut lines: Vec<StrokeLine> = Vec::new();
         for edge in driven {
-            let stroke = *self.stroke_of.get(edge as usize)?;
+            let stroke = *self.stroke_of.get(edge.index())?;
             if lines.iter().all(|line| line.stroke != stroke) {
                 lines.push(StrokeLine::new(network, stroke, settings.policy, &settings.corridor).ok()?);
             }
         }
-        let line = |edge: u32| {
-            let stroke = self.stroke_of.get(edge as usize).copied();
+        let line = |edge: EdgeNo| {
+            let stroke = self.stroke_of.get(edge.index()).copied();
             lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
         };
         let turn = TurnEdges { movement: self.movement, through: self.join.arcs };
@@ -242,8 +242,8 @@ impl Turning<'_> {
 
     /// The nodes at which the vehicle turns, with their positions.
     pub(crate) fn nodes(&self, network: &Network) -> Vec<(i64, LonLat)> {
-        let end = |edge: u32, end: bool| {
-            let edge = network.edges.get(edge as usize)?;
+        let end = |edge: EdgeNo, end: bool| {
+            let edge = network.edges.get(edge.index())?;
             let mut line = network.positions(edge);
             let at = if end { line.next_back()? } else { line.next()? };
             Some((if end { edge.to_node } else { edge.from_node }, at))
@@ -268,7 +268,7 @@ impl Turning<'_> {
         settings.turn_policy.max(settings.policy)
     }
 
-    fn rounded(&self, corners: &[(i64, [u32; 2])], supposed: &Suppositions, radius_m: f64) -> Suppositions {
+    fn rounded(&self, corners: &[(i64, [EdgeNo; 2])], supposed: &Suppositions, radius_m: f64) -> Suppositions {
         let mut rounded = supposed.clone();
         for &(node, between) in corners {
             rounded.round(node, between, radius_m);
@@ -276,8 +276,8 @@ impl Turning<'_> {
         rounded
     }
 
-    fn radius_m(&self, network: &Network, node: i64, [from, to]: [u32; 2]) -> Option<f64> {
-        let (from, to) = (network.edges.get(from as usize)?, network.edges.get(to as usize)?);
+    fn radius_m(&self, network: &Network, node: i64, [from, to]: [EdgeNo; 2]) -> Option<f64> {
+        let (from, to) = (network.edges.get(from.index())?, network.edges.get(to.index())?);
         Some(self.settings().kerbs.at(network, node, [from, to]))
     }
 

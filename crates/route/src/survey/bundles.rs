@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::component::{Component, Scratch};
 use super::joints::{CLOSED, Item, Joints, OPEN, Sense};
+use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
 
 /// The greatest price of a way there and back, centimetres of missing room.
@@ -53,8 +54,8 @@ impl Field<'_> {
     pub(super) fn bundles(&self, stop: &Stop) -> Result<Vec<Bundle>, Stopped> {
         let (there, back) = (Ways::find(self, Sense::Ahead), Ways::find(self, Sense::Back));
         let mut found: BTreeSet<Vec<Item>> = BTreeSet::new();
-        for edge in 0..self.joints.edges() as u32 {
-            let sum = there.cm[edge as usize].saturating_add(back.cm[edge as usize]);
+        for edge in EdgeNo::first(self.joints.edges()) {
+            let sum = there.cm[edge.index()].saturating_add(back.cm[edge.index()]);
             if self.component.has(edge) || sum > MOST_CM {
                 continue;
             }
@@ -155,29 +156,30 @@ impl Ways {
         let edges = joints.edges();
         let mut ways = Self { cm: vec![u32::MAX; edges], last: vec![NONE; edges], links: Vec::new() };
         let mut queue = BinaryHeap::new();
-        for edge in (0..edges as u32).filter(|&edge| component.has(edge)) {
-            ways.cm[edge as usize] = 0;
+        for edge in EdgeNo::first(edges).filter(|&edge| component.has(edge)) {
+            ways.cm[edge.index()] = 0;
             queue.push(Reverse((0, edge)));
         }
         while let Some(Reverse((cm, at))) = queue.pop() {
-            if cm > ways.cm[at as usize] {
+            if cm > ways.cm[at.index()] {
                 continue;
             }
-            let mut visit = |item: Item, next: u32| {
-                let own = [item, next].map(|item| prices[item as usize]);
+            let mut visit = |item: Item, next: EdgeNo| {
+                let on = next.get();
+                let own = [item, on].map(|item| prices[item as usize]);
                 let sum = own.iter().fold(cm, |sum, &price| sum.saturating_add(price));
-                if sum > MOST_CM || sum >= ways.cm[next as usize] {
+                if sum > MOST_CM || sum >= ways.cm[next.index()] {
                     return;
                 }
-                ways.cm[next as usize] = sum;
-                let mut last = ways.last[at as usize];
-                for (item, price) in [item, next].into_iter().zip(own) {
+                ways.cm[next.index()] = sum;
+                let mut last = ways.last[at.index()];
+                for (item, price) in [item, on].into_iter().zip(own) {
                     if price != OPEN {
                         ways.links.push((item, last));
                         last = ways.links.len() as u32 - 1;
                     }
                 }
-                ways.last[next as usize] = last;
+                ways.last[next.index()] = last;
                 queue.push(Reverse((sum, next)));
             };
             match sense {
@@ -189,9 +191,9 @@ impl Ways {
     }
 
     /// What is not open on the way of an edge, with the edge itself.
-    fn items(&self, edge: u32) -> Vec<Item> {
+    fn items(&self, edge: EdgeNo) -> Vec<Item> {
         let mut items = Vec::new();
-        let mut link = self.last[edge as usize];
+        let mut link = self.last[edge.index()];
         while let Some(&(item, before)) = self.links.get(link as usize) {
             items.push(item);
             link = before;

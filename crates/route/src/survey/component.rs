@@ -1,6 +1,7 @@
 //! The component of the roads in which a vehicle can drive from everywhere to everywhere, and what joins it when more is open.
 
 use super::joints::{CLOSED, Item, Joints, OPEN, Sense, Step};
+use crate::network::EdgeNo;
 
 /// The roads from which one edge can be reached and that can be reached from it.
 pub(super) struct Component {
@@ -16,7 +17,7 @@ pub(super) struct Scratch {
     extra: Vec<u32>,
     there: Vec<u32>,
     back: Vec<u32>,
-    open: Vec<u32>,
+    open: Vec<EdgeNo>,
 }
 
 impl Scratch {
@@ -28,15 +29,15 @@ impl Scratch {
 
 impl Component {
     /// The component of an edge over everything that is open.
-    pub(super) fn of(joints: &Joints, prices: &[u32], edge: u32) -> Self {
+    pub(super) fn of(joints: &Joints, prices: &[u32], edge: EdgeNo) -> Self {
         let flood = |sense: Sense| {
             let mut seen = vec![false; joints.edges()];
             let mut open = vec![edge];
-            seen[edge as usize] = true;
+            seen[edge.index()] = true;
             while let Some(at) = open.pop() {
-                let mut visit = |step: Step, next: u32| {
-                    let usable = prices[step.item as usize] == OPEN && prices[next as usize] == OPEN;
-                    if usable && !std::mem::replace(&mut seen[next as usize], true) {
+                let mut visit = |step: Step, next: EdgeNo| {
+                    let usable = prices[step.item as usize] == OPEN && prices[next.index()] == OPEN;
+                    if usable && !std::mem::replace(&mut seen[next.index()], true) {
                         open.push(next);
                     }
                 };
@@ -51,14 +52,14 @@ impl Component {
     }
 
     /// Whether an edge belongs to the component.
-    pub(super) fn has(&self, edge: u32) -> bool {
-        self.there[edge as usize] && self.back[edge as usize]
+    pub(super) fn has(&self, edge: EdgeNo) -> bool {
+        self.there[edge.index()] && self.back[edge.index()]
     }
 
     /// The sum of `lengths_m` over the edges of the component.
     pub(super) fn length_m(&self, lengths_m: &[f64]) -> f64 {
         // The fold begins at 0.0, because an empty `sum` of floats is -0.0.
-        let on = (0..).zip(lengths_m).filter(|(edge, _)| self.has(*edge));
+        let on = EdgeNo::all().zip(lengths_m).filter(|(edge, _)| self.has(*edge));
         on.map(|(_, length_m)| length_m).fold(0.0, |sum, m| sum + m)
     }
 
@@ -86,15 +87,15 @@ impl Component {
                 // Where the item is an edge, any step onto it; else its own step.
                 let edge = (item as usize) < joints.edges();
                 let from_edge: Vec<Step> = match (edge, ahead) {
-                    (true, true) => joints.before(item).collect(),
-                    (true, false) => joints.after(item).collect(),
+                    (true, true) => joints.before(EdgeNo::new(item)).collect(),
+                    (true, false) => joints.after(EdgeNo::new(item)).collect(),
                     (false, _) => joints.step(item).into_iter().collect(),
                 };
                 for step in from_edge {
                     let (at, next) = if ahead { (step.from, step.to) } else { (step.to, step.from) };
-                    let usable = is_open(step.item) && is_open(at) && is_open(next);
-                    if usable && known[at as usize] && !known[next as usize] && seen[next as usize] != *round {
-                        seen[next as usize] = *round;
+                    let usable = is_open(step.item) && is_open(at.get()) && is_open(next.get());
+                    if usable && known[at.index()] && !known[next.index()] && seen[next.index()] != *round {
+                        seen[next.index()] = *round;
                         open.push(next);
                     }
                 }
@@ -102,10 +103,10 @@ impl Component {
             let mut done = 0;
             while let Some(&at) = open.get(done) {
                 done += 1;
-                let mut visit = |step: Step, next: u32| {
-                    let new = !known[next as usize] && seen[next as usize] != *round;
-                    if new && is_open(step.item) && is_open(next) {
-                        seen[next as usize] = *round;
+                let mut visit = |step: Step, next: EdgeNo| {
+                    let new = !known[next.index()] && seen[next.index()] != *round;
+                    if new && is_open(step.item) && is_open(next.get()) {
+                        seen[next.index()] = *round;
                         open.push(next);
                     }
                 };
@@ -116,11 +117,11 @@ impl Component {
             }
             if ahead {
                 // What is reached now and led back before, or leads back now, too, is found below.
-                let both = open.iter().filter(|&&edge| self.back[edge as usize]);
-                joined_m += both.map(|&edge| lengths_m[edge as usize]).fold(0.0, |sum, m| sum + m);
+                let both = open.iter().filter(|&&edge| self.back[edge.index()]);
+                joined_m += both.map(|&edge| lengths_m[edge.index()]).fold(0.0, |sum, m| sum + m);
             } else {
-                let both = open.iter().filter(|&&edge| self.there[edge as usize] || there[edge as usize] == *round);
-                joined_m += both.map(|&edge| lengths_m[edge as usize]).fold(0.0, |sum, m| sum + m);
+                let both = open.iter().filter(|&&edge| self.there[edge.index()] || there[edge.index()] == *round);
+                joined_m += both.map(|&edge| lengths_m[edge.index()]).fold(0.0, |sum, m| sum + m);
             }
         }
         joined_m

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::conditions::{edge_price, turn_price};
-use crate::network::{MovementKind, Network};
+use crate::network::{EdgeNo, MovementKind, Network};
 use crate::obstacles::CENTIMETRE;
 use crate::permits::{Permit, Permits};
 use crate::roads::Roads;
@@ -32,8 +32,8 @@ pub(super) const CLOSED: u32 = u32::MAX;
 /// A step from the end of one edge to the beginning of another one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
-    pub(super) from: u32,
-    pub(super) to: u32,
+    pub(super) from: EdgeNo,
+    pub(super) to: EdgeNo,
     /// The movement or passage.
     pub(super) item: Item,
 }
@@ -66,9 +66,9 @@ impl Joints {
         steps.sort_unstable_by_key(|step| (step.from, step.item));
         let mut into: Vec<u32> = (0..steps.len() as u32).collect();
         into.sort_by_key(|&step| steps[step as usize].to);
-        let ends = |of: &dyn Fn(u32) -> u32| {
+        let ends = |of: &dyn Fn(u32) -> EdgeNo| {
             let mut ends = vec![0_u32; edges];
-            (0..steps.len() as u32).for_each(|step| ends[of(step) as usize] += 1);
+            (0..steps.len() as u32).for_each(|step| ends[of(step).index()] += 1);
             let mut sum = 0;
             for end in &mut ends {
                 sum += *end;
@@ -91,7 +91,7 @@ impl Joints {
     }
 
     /// The nearest edge that is open to through traffic, over usable edges that are not. The edge itself if it is such an edge.
-    pub(super) fn way_out(&self, edge: u32, usable: impl Fn(u32) -> bool) -> Option<u32> {
+    pub(super) fn way_out(&self, edge: EdgeNo, usable: impl Fn(EdgeNo) -> bool) -> Option<EdgeNo> {
         let (mut open, mut seen) = (VecDeque::from([edge]), FxHashSet::from_iter([edge]));
         while let Some(at) = open.pop_front() {
             if !self.ends_only.has(at) {
@@ -114,11 +114,11 @@ impl Joints {
         self.steps.get(*place as usize).copied()
     }
 
-    pub(super) fn after(&self, edge: u32) -> impl Iterator<Item = Step> + '_ {
+    pub(super) fn after(&self, edge: EdgeNo) -> impl Iterator<Item = Step> + '_ {
         self.steps[range(&self.after, edge)].iter().copied()
     }
 
-    pub(super) fn before(&self, edge: u32) -> impl Iterator<Item = Step> + '_ {
+    pub(super) fn before(&self, edge: EdgeNo) -> impl Iterator<Item = Step> + '_ {
         self.into[range(&self.before, edge)].iter().map(|&step| self.steps[step as usize])
     }
 
@@ -137,7 +137,7 @@ impl Joints {
 
     /// The place of the junction at a node.
     pub(super) fn junction(&self, network: &Network, node: i64) -> Option<u32> {
-        let edge = network.crossings.at(node).iter().find(|&&edge| network.edges[edge as usize].to_node == node)?;
+        let edge = network.crossings.at(node).iter().find(|&&edge| network.edges[edge.index()].to_node == node)?;
         self.after(*edge).next().map(|step| self.place(step.item))
     }
 
@@ -149,7 +149,8 @@ impl Joints {
             u64::MAX => CLOSED,
             price => ((price / CENTIMETRE) as u32).max(1),
         };
-        let edges = (0..).zip(&permits.edges).map(|(i, permit)| cm(permit, &|permit| edge_price(network, i, permit)));
+        let edges =
+            EdgeNo::all().zip(&permits.edges).map(|(i, permit)| cm(permit, &|permit| edge_price(network, i, permit)));
         let of_turns = movements.all().iter().zip(&permits.movements).map(|(movement, permit)| {
             let barred = movement.forbidden.is_some() || movement.kind == MovementKind::UTurn;
             if barred || self.ends_only.leads_out([movement.from, movement.to]) {
@@ -183,8 +184,8 @@ impl Joints {
     }
 }
 
-fn range(ends: &[u32], edge: u32) -> std::ops::Range<usize> {
-    let edge = edge as usize;
+fn range(ends: &[u32], edge: EdgeNo) -> std::ops::Range<usize> {
+    let edge = edge.index();
     let start = edge.checked_sub(1).map_or(0, |before| ends[before]);
     start as usize..ends[edge] as usize
 }
@@ -201,7 +202,7 @@ fn places(network: &Network, roads: &Roads) -> Vec<u32> {
     let mut joined = Joined((0..numbers.len() as u32).collect());
     for passage in movements.passages() {
         for &arc in &passage.through {
-            let [a, b] = node_of[arc as usize];
+            let [a, b] = node_of[arc.index()];
             joined.join(a, b);
         }
     }
@@ -213,7 +214,7 @@ fn places(network: &Network, roads: &Roads) -> Vec<u32> {
     });
     let mut places: Vec<u32> = piece.collect();
     let from = movements.all().iter().map(|m| m.from).chain(movements.passages().iter().map(|p| p.from));
-    places.extend(from.map(|from| joined.root(node_of[from as usize][1])));
+    places.extend(from.map(|from| joined.root(node_of[from.index()][1])));
     places
 }
 

@@ -11,7 +11,7 @@ use crate::certify::{Job, MOST_KERB_M, Touched, TurnJob, certify_some_turns, cer
 use crate::conditions::{BESIDE_M, Condition, ConditionAt, Suppositions, Turning};
 use crate::drive::{Drive, Join};
 use crate::driver::Driver;
-use crate::network::{MovementKind, Network, pieces};
+use crate::network::{EdgeNo, MovementKind, Network, pieces};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::permits::{Permit, Permits};
 use crate::reporter::Silent;
@@ -43,7 +43,7 @@ pub(super) struct Opener {
     items: Vec<Option<Item>>,
     turn_of: FxHashMap<Item, u32>,
     /// By edge: the other direction of the same piece of road.
-    back_of: Vec<Option<u32>>,
+    back_of: Vec<Option<EdgeNo>>,
     stroke_of: Arc<[u32]>,
     /// By edge: its place in `Network::stroke_edges`.
     place_of: Vec<u32>,
@@ -52,7 +52,7 @@ pub(super) struct Opener {
     chosen: Suppositions,
     /// What turns need, and edges, metres; `None` if nothing does.
     needs: FxHashMap<Item, Option<Suppositions>>,
-    widths_m: FxHashMap<u32, Option<f64>>,
+    widths_m: FxHashMap<EdgeNo, Option<f64>>,
 }
 
 /// Items that are open if some conditions hold.
@@ -76,7 +76,7 @@ impl Opener {
         let mut place_of = vec![0; network.edges.len()];
         for stroke in &network.strokes {
             for place in stroke.edges.clone() {
-                place_of[network.stroke_edges[place as usize] as usize] = place;
+                place_of[network.stroke_edges[place as usize].index()] = place;
             }
         }
         let items = joints.items_of(roads, &turns);
@@ -103,7 +103,7 @@ impl Opener {
         self.chosen = opened.supposed;
         self.chosen.apply(&mut self.network);
         // What sees the change may need less or more now.
-        self.widths_m.retain(|edge, _| !opened.touched.contains(edge));
+        self.widths_m.retain(|edge, _| !opened.touched.contains(&edge.get()));
         self.needs.retain(|turn, _| !opened.touched.contains(turn));
     }
 
@@ -115,7 +115,9 @@ impl Opener {
         permits: &Permits,
         stop: &Stop,
     ) -> Result<Result<Suppositions, Hopeless>, Stopped> {
-        let (edges, turns): (Vec<Item>, Vec<Item>) = items.iter().partition(|&&item| (item as usize) < joints.edges());
+        let (on_edges, turns): (Vec<Item>, Vec<Item>) =
+            items.iter().partition(|&&item| (item as usize) < joints.edges());
+        let edges: Vec<EdgeNo> = on_edges.iter().copied().map(EdgeNo::new).collect();
         let mut supposed = self.chosen.clone();
         if let Err(hopeless) = self.widen(&edges, &mut supposed, stop)? {
             return Ok(Err(hopeless));
@@ -125,13 +127,13 @@ impl Opener {
             return Ok(Err(hopeless));
         }
         let mut verdicts: Vec<Verdict> = permits.edges.iter().map(|permit| permit.verdict).collect();
-        edges.iter().for_each(|&edge| verdicts[edge as usize] = Verdict::Safe);
+        edges.iter().for_each(|&edge| verdicts[edge.index()] = Verdict::Safe);
         for round in 0..=ROUNDS {
             stop.check()?;
             self.level(&mut supposed);
             if supposed.raises(&self.chosen) {
                 // Two values for one place would contradict each other in the register.
-                return Ok(Err(Hopeless(if turns.is_empty() { edges } else { turns })));
+                return Ok(Err(Hopeless(if turns.is_empty() { on_edges } else { turns })));
             }
             let failed = self.not_turned(&turns, &supposed, &verdicts);
             if failed.is_empty() {
@@ -147,29 +149,29 @@ impl Opener {
     /// Supposes for each edge the width that it needs.
     fn widen(
         &mut self,
-        edges: &[u32],
+        edges: &[EdgeNo],
         supposed: &mut Suppositions,
         stop: &Stop,
     ) -> Result<Result<(), Hopeless>, Stopped> {
         let strip = self.settings.policy;
-        let need = |&edge: &u32| {
+        let need = |&edge: &EdgeNo| {
             stop.check()?;
-            let known = self.network.edges.get(edge as usize).and_then(|edge| self.network.section(edge).strip(strip));
+            let known = self.network.edges.get(edge.index()).and_then(|edge| self.network.section(edge).strip(strip));
             // What is measured already, another measurement does not widen.
             let open = known.is_some_and(|strip| strip.source != WidthSource::Surveyed);
-            let stroke = self.stroke_of[edge as usize];
+            let stroke = self.stroke_of[edge.index()];
             let need = || edge_need(&self.network, stroke, edge, &self.driver.model, &self.settings);
             Ok((edge, open.then(need).flatten()))
         };
-        let unknown: Vec<u32> = edges.iter().copied().filter(|edge| !self.widths_m.contains_key(edge)).collect();
-        let found: Vec<(u32, Option<f64>)> = unknown.par_iter().map(need).collect::<Result<_, Stopped>>()?;
+        let unknown: Vec<EdgeNo> = edges.iter().copied().filter(|edge| !self.widths_m.contains_key(edge)).collect();
+        let found: Vec<(EdgeNo, Option<f64>)> = unknown.par_iter().map(need).collect::<Result<_, Stopped>>()?;
         self.widths_m.extend(found);
-        let of = |edge: &u32| self.widths_m.get(edge).copied().flatten();
-        let hopeless: Vec<Item> = edges.iter().copied().filter(|edge| of(edge).is_none()).collect();
+        let of = |edge: &EdgeNo| self.widths_m.get(edge).copied().flatten();
+        let hopeless: Vec<Item> = edges.iter().filter(|edge| of(edge).is_none()).map(|edge| edge.get()).collect();
         if !hopeless.is_empty() {
             return Ok(Err(Hopeless(hopeless)));
         }
-        let needs: Vec<(u32, f64)> = edges.iter().filter_map(|edge| Some((*edge, of(edge)?))).collect();
+        let needs: Vec<(EdgeNo, f64)> = edges.iter().filter_map(|edge| Some((*edge, of(edge)?))).collect();
         for &(edge, need_m) in &needs {
             self.suppose_width(edge, need_m, supposed);
         }
@@ -184,14 +186,14 @@ impl Opener {
             }
         }
         let narrow = if narrow.is_empty() { narrow } else { self.still_unsafe(edges, supposed) };
-        Ok(if narrow.is_empty() { Ok(()) } else { Err(Hopeless(narrow)) })
+        Ok(if narrow.is_empty() { Ok(()) } else { Err(Hopeless(narrow.into_iter().map(EdgeNo::get).collect())) })
     }
 
     /// Supposes a width of an edge. A carriageway has one width for both directions.
-    fn suppose_width(&self, edge: u32, width_m: f64, supposed: &mut Suppositions) {
+    fn suppose_width(&self, edge: EdgeNo, width_m: f64, supposed: &mut Suppositions) {
         let strip = self.settings.policy;
         supposed.widen(&self.network, edge, strip, width_m);
-        if let Some(back) = self.back_of[edge as usize].filter(|_| strip == Policy::Carriageway) {
+        if let Some(back) = self.back_of[edge.index()].filter(|_| strip == Policy::Carriageway) {
             supposed.widen(&self.network, back, strip, width_m);
         }
     }
@@ -203,7 +205,7 @@ impl Opener {
             return;
         }
         let edges = supposed.differing_edges(&self.chosen);
-        for (edge, back) in edges.into_iter().filter_map(|edge| Some((edge, self.back_of[edge as usize]?))) {
+        for (edge, back) in edges.into_iter().filter_map(|edge| Some((edge, self.back_of[edge.index()]?))) {
             if let Some(width_m) = supposed.width_m(&self.network, edge, Policy::Carriageway) {
                 supposed.widen(&self.network, back, Policy::Carriageway, width_m);
             }
@@ -211,13 +213,13 @@ impl Opener {
     }
 
     /// The edges that are not safe under suppositions.
-    fn still_unsafe(&self, edges: &[u32], supposed: &Suppositions) -> Vec<u32> {
+    fn still_unsafe(&self, edges: &[EdgeNo], supposed: &Suppositions) -> Vec<EdgeNo> {
         if edges.is_empty() {
             return Vec::new();
         }
         let mut network = self.network.clone();
         supposed.apply(&mut network);
-        let mut strokes: Vec<u32> = edges.iter().map(|&edge| self.stroke_of[edge as usize]).collect();
+        let mut strokes: Vec<u32> = edges.iter().map(|&edge| self.stroke_of[edge.index()]).collect();
         strokes.sort_unstable();
         strokes.dedup();
         let mut narrow = Vec::new();
@@ -339,19 +341,19 @@ impl Opener {
     }
 
     /// The edges of a stroke before or after one of them, up to a distance, from it on.
-    fn along(&self, edge: u32, most_m: f64, sense: Sense) -> Vec<u32> {
+    fn along(&self, edge: EdgeNo, most_m: f64, sense: Sense) -> Vec<EdgeNo> {
         let network = &self.network;
-        let Some(stroke) = network.strokes.get(self.stroke_of[edge as usize] as usize) else { return Vec::new() };
-        let place = self.place_of[edge as usize];
+        let Some(stroke) = network.strokes.get(self.stroke_of[edge.index()] as usize) else { return Vec::new() };
+        let place = self.place_of[edge.index()];
         let range = |from: u32, to: u32| &network.stroke_edges[from as usize..to as usize];
-        let others: Vec<u32> = match sense {
+        let others: Vec<EdgeNo> = match sense {
             Sense::Ahead => range(place + 1, stroke.edges.end).to_vec(),
             Sense::Back => range(stroke.edges.start, place).iter().rev().copied().collect(),
         };
         let mut far_m = 0.0;
         let near = others.into_iter().take_while(|&edge| {
             let begins_m = far_m;
-            far_m += network.length_m(&network.edges[edge as usize]);
+            far_m += network.length_m(&network.edges[edge.index()]);
             begins_m < most_m
         });
         near.collect()
@@ -385,7 +387,7 @@ impl Opener {
         let job = Job { network: &network, models, settings: &self.settings };
         let Ok(_) = certify_strokes::<std::convert::Infallible>(&job, &touched.strokes, &Silent, |_, made| {
             let rsc_m = made.conclusion.measured.map(|measured| measured.rsc_m);
-            permits.edges[made.edge as usize] = Permit { verdict: made.conclusion.verdict, rsc_m };
+            permits.edges[made.edge.index()] = Permit { verdict: made.conclusion.verdict, rsc_m };
             Ok(())
         });
         let verdicts = [permits.edges.iter().map(|permit| permit.verdict).collect()];
@@ -402,7 +404,7 @@ impl Opener {
         let strokes = touched.strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize));
         let on = strokes.flat_map(|s| &network.stroke_edges[s.edges.start as usize..s.edges.end as usize]);
         let turned = touched.turns.iter().filter_map(|&turn| self.items.get(turn as usize).copied().flatten());
-        let touched = on.copied().chain(turned).collect();
+        let touched = on.map(|edge| edge.get()).chain(turned).collect();
         Opened { conditions: self.conditions(&supposed), permits, touched, supposed }
     }
 
@@ -410,14 +412,14 @@ impl Opener {
     fn conditions(&self, supposed: &Suppositions) -> Vec<Condition> {
         let new = supposed.beyond(&self.chosen);
         let edges = supposed.differing_edges(&self.chosen);
-        let mut way: Vec<u32> = edges.into_iter().collect();
-        way.sort_by_key(|&edge| self.place_of[edge as usize]);
+        let mut way: Vec<EdgeNo> = edges.into_iter().collect();
+        way.sort_by_key(|&edge| self.place_of[edge.index()]);
         let mut conditions = new.conditions(&self.roads.network, &self.settings.kerbs, &way);
         // Both ways round a corner have one kerb.
         let mut kerbs = FxHashSet::default();
         conditions.retain(|condition| match condition.at {
             ConditionAt::Corner { node, between } => {
-                let edges = between.map(|edge| &self.network.edges[edge as usize]);
+                let edges = between.map(|edge| &self.network.edges[edge.index()]);
                 kerbs.insert((node, pieces(edges)))
             }
             ConditionAt::Road(_) | ConditionAt::Junction(_) => true,
@@ -435,13 +437,13 @@ fn slot(permits: &mut Permits, place: usize) -> Option<&mut Permit> {
 }
 
 /// By edge: the other direction of the same piece of road.
-fn backs(network: &Network) -> Vec<Option<u32>> {
-    let mut first: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+fn backs(network: &Network) -> Vec<Option<EdgeNo>> {
+    let mut first: FxHashMap<(u32, u32), EdgeNo> = FxHashMap::default();
     let mut backs = vec![None; network.edges.len()];
-    for (index, edge) in (0_u32..).zip(&network.edges) {
+    for (index, edge) in network.numbered_edges() {
         if let Some(other) = first.insert((edge.road, edge.shape.start), index) {
-            backs[index as usize] = Some(other);
-            backs[other as usize] = Some(index);
+            backs[index.index()] = Some(other);
+            backs[other.index()] = Some(index);
         }
     }
     backs

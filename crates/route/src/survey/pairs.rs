@@ -6,6 +6,7 @@ use super::joints::Joints;
 use super::{Opens, Step, Survey};
 use crate::conditions::{Condition, ConditionAt};
 use crate::evidence::Quantity;
+use crate::network::EdgeNo;
 use crate::plan::{Planner, Question, Unanswered};
 use crate::reporter::Reporter;
 use crate::snap::Position;
@@ -34,8 +35,8 @@ pub struct Pairs {
 /// What has to be measured: a quantity at an edge, a corner or a junction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Measurand {
-    Edge(Quantity, u32),
-    Corner(i64, [u32; 2]),
+    Edge(Quantity, EdgeNo),
+    Corner(i64, [EdgeNo; 2]),
     Junction(i64),
 }
 
@@ -214,8 +215,8 @@ fn open(conditions: &[Condition], needed: &BTreeMap<Measurand, f64>) -> Vec<Cond
     for condition in conditions {
         match &condition.at {
             ConditionAt::Road(edges) => {
-                let mut run: Option<(f64, Vec<u32>)> = None;
-                let mut close = |run: Option<(f64, Vec<u32>)>| {
+                let mut run: Option<(f64, Vec<EdgeNo>)> = None;
+                let mut close = |run: Option<(f64, Vec<EdgeNo>)>| {
                     if let Some((needed_m, edges)) = run {
                         open.push(Condition { needed_m, at: ConditionAt::Road(edges), ..condition.clone() });
                     }
@@ -251,7 +252,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn along(edges: impl IntoIterator<Item = u32>, needed_m: f64) -> Condition {
-        let at = ConditionAt::Road(edges.into_iter().collect());
+        let at = ConditionAt::Road(edges.into_iter().map(EdgeNo::new).collect());
         Condition { quantity: Quantity::CarriagewayWidth, at, assumed_m: None, needed_m }
     }
 

@@ -10,6 +10,7 @@ use super::{Opens, Step, Survey};
 use crate::conditions::Suppositions;
 use crate::driver::Driver;
 use crate::graph::Graph;
+use crate::network::EdgeNo;
 use crate::permits::Permits;
 use crate::reach::components;
 use crate::reporter::Reporter;
@@ -29,7 +30,7 @@ pub fn survey_region(
     roads: &Arc<Roads>,
     driver: &Arc<Driver>,
     speeds: &Speeds,
-    from: &[u32],
+    from: &[EdgeNo],
     limit: usize,
     reporter: &dyn Reporter,
     stop: &Stop,
@@ -38,7 +39,7 @@ pub fn survey_region(
     let joints = Joints::of(roads, &driver.model.vehicle);
     let lengths_m: Vec<f64> = roads.network.edges.iter().map(|edge| roads.network.length_m(edge)).collect();
     let prices = joints.prices(roads, &driver.permits);
-    let certified = (0..).zip(&lengths_m).filter(|(edge, _)| driver.permits.edge(*edge));
+    let certified = EdgeNo::all().zip(&lengths_m).filter(|(edge, _)| driver.permits.edge(*edge));
     let all = certified.map(|(_, length_m)| length_m).fold(0.0, |sum, m| sum + m);
     let mut survey = Survey { opens: Opens::Metres, all, before: 0.0, steps: Vec::new(), hopeless: 0, gave_up: false };
     let Some(anchor) = anchor(roads, driver, speeds, &joints, &prices, &lengths_m, from) else { return Ok(survey) };
@@ -78,19 +79,19 @@ fn anchor(
     joints: &Joints,
     prices: &[u32],
     lengths_m: &[f64],
-    from: &[u32],
-) -> Option<u32> {
-    let usable = |edge: u32| driver.permits.edge(edge);
+    from: &[EdgeNo],
+) -> Option<EdgeNo> {
+    let usable = |edge: EdgeNo| driver.permits.edge(edge);
     // A journey that begins on a road to a destination goes on on the road before it.
     let usable =
         from.iter().copied().filter(|&edge| usable(edge)).map(|edge| joints.way_out(edge, usable).unwrap_or(edge));
-    let length_m = |&edge: &u32| Component::of(joints, prices, edge).length_m(lengths_m);
+    let length_m = |&edge: &EdgeNo| Component::of(joints, prices, edge).length_m(lengths_m);
     if let Some(edge) = usable.max_by(|a, b| length_m(a).total_cmp(&length_m(b))) {
         return Some(edge);
     }
     let graph = Graph::new(roads, speeds, Measure::Distance).for_vehicle(&driver.model.vehicle);
     let components = components(&graph, &driver.permits.access(&roads.movements));
-    components.of.iter().position(|of| *of == Some(0)).map(|edge| edge as u32)
+    components.of.iter().position(|of| *of == Some(0)).map(EdgeNo::at)
 }
 
 struct Surveyor<'a> {
@@ -98,7 +99,7 @@ struct Surveyor<'a> {
     joints: Joints,
     lengths_m: Vec<f64>,
     by_place: Vec<Vec<Item>>,
-    anchor: u32,
+    anchor: EdgeNo,
     /// What is open with everything chosen, and what is not.
     permits: Permits,
     prices: Vec<u32>,

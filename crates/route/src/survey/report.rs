@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{Opens, Survey};
 use crate::conditions::{Condition, ConditionAt};
 use crate::driver::Driver;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::words::Named as _;
 
@@ -132,7 +132,7 @@ impl Condition {
     /// Where the assumed value comes from: a source of widths, or `assumed` or `surveyed` for a kerb. `None` if nothing is assumed.
     #[must_use]
     pub fn assumed_from(&self, network: &Network) -> Option<&'static str> {
-        let edge = |edge: u32| network.edges.get(edge as usize);
+        let edge = |edge: EdgeNo| network.edges.get(edge.index());
         match &self.at {
             ConditionAt::Road(edges) => {
                 let policy = *Policy::ALL.iter().find(|policy| super::width_of(**policy) == self.quantity)?;

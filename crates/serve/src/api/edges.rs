@@ -66,7 +66,7 @@ fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
     legal.insert("tags".to_owned(), json!(e.legal_tags));
     let members = json!({
         "edge_id": e.edge.id.to_string(),
-        "feature_id": e.edge.index + 1,
+        "feature_id": e.edge.index.get() + 1,
         "way_id": e.edge.way_id.to_string(),
         "from_node": e.edge.from_node.to_string(),
         "to_node": e.edge.to_node.to_string(),
@@ -95,7 +95,7 @@ fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
 /// What the road of an edge is called, or what it joins.
 fn title(roads: &RoadIndex, edge_id: i64) -> String {
     let network = roads.network();
-    let edge = roads.edge(edge_id).and_then(|edge| network.edges.get(edge as usize));
+    let edge = roads.edge(edge_id).and_then(|edge| network.edges.get(edge.index()));
     edge.map_or_else(String::new, |edge| network.title(edge))
 }
 

@@ -13,7 +13,7 @@ use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
 use super::{GEOJSON, SVG, answered, id, relative, suppose};
 use crate::explain::{self, Explanation, MapError};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::LonLat;
 use crate::picture;
 use crate::rows::{Measurement, SetKey};
@@ -105,7 +105,7 @@ fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Res
 fn of_edge(
     region: &Region,
     roads: &RoadIndex,
-    edge: u32,
+    edge: EdgeNo,
     model: &Model,
     settings: &Settings,
     stop: &Stop,
@@ -113,7 +113,7 @@ fn of_edge(
     let network = roads.network();
     let explanation = explain::explain_edge(network, edge, model, settings, stop)?;
     let explanation = explanation.ok_or_else(|| Problem::fault(format!("edge {edge} is not in the network")))?;
-    let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
+    let edge_id = network.edges.get(edge.index()).map(|edge| edge.id);
     let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };
     let row = region.read(|database| database.query(&options)?.next().transpose())?;
     if let Some(detail) = row.as_ref().and_then(|row| explanation.disagreement(&row.certificate)) {
@@ -130,7 +130,7 @@ fn of_edge(
     members["suppose"] = suppose::of_edge(network, edge, model, settings, row.as_ref());
     let measured = region.read(|database| database.measured_on(network, edge))?;
     members["measurements"] = measured.iter().map(Measurement::json).collect();
-    let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
+    let line = network.edges.get(edge.index()).map(|edge| network.positions(edge).collect::<Vec<_>>());
     members["geometry"] = geometry(line.as_deref());
     let mut map = explain::edge_geojson(&explanation, stop).map_err(unmapped)?;
     map["netcert"]["measurements"] = members["measurements"].clone();
@@ -153,10 +153,10 @@ fn of_turn(
     members["kind"] = json!("turn");
     members["turn_id"] = json!(id.to_string());
     members["turn"] = json!(turn.title());
-    let edge_id = |edge: u32| roads.network().edges.get(edge as usize).map(|edge| edge.id.to_string());
+    let edge_id = |edge: EdgeNo| roads.network().edges.get(edge.index()).map(|edge| edge.id.to_string());
     members["from_edge"] = json!(edge_id(facts.movement.from));
     members["to_edge"] = json!(edge_id(facts.movement.to));
-    let node = roads.network().edges.get(facts.movement.from as usize);
+    let node = roads.network().edges.get(facts.movement.from.index());
     let node = node.and_then(|edge| roads.network().positions(edge).next_back());
     members["at"] = json!(node.map(LonLat::degrees));
     let set = SetKey { vehicle: &model.vehicle.id, policy: settings.policy };
@@ -187,10 +187,10 @@ fn geometry(line: Option<&[LonLat]>) -> Value {
 
 /// Longitude and latitude of the limiting place, on the map's line. The place is transferred by its share of the length,
 /// because the corridor's centreline is another line, some decimetres away.
-fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
+fn limiting_place(network: &Network, edge: EdgeNo, explanation: &Explanation) -> Option<[f64; 2]> {
     let geometry = explanation.geometry.as_ref()?;
     let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);
-    let line: Vec<(f64, f64)> = network.positions(network.edges.get(edge as usize)?).map(LonLat::degrees).collect();
+    let line: Vec<(f64, f64)> = network.positions(network.edges.get(edge.index())?).map(LonLat::degrees).collect();
     let shrink = line.first()?.1.to_radians().cos();
     let length = |p: &[(f64, f64)]| ((p[1].0 - p[0].0) * shrink).hypot(p[1].1 - p[0].1);
     let mut left = share.clamp(0.0, 1.0) * line.windows(2).map(length).sum::<f64>();

@@ -1,7 +1,6 @@
 //! A whole road as GeoJSON, with a summary of its certificates.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use serde_json::{Value, json};
 
@@ -13,7 +12,7 @@ use super::super::roads::RoadIndex;
 use super::super::search::{WholeRoad, edges_of};
 use super::summary::Numbers;
 use super::{GEOJSON, SCOPE, id};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::StringId;
 use crate::osm::facts::highway;
 use crate::rows::{Bounds, RoadName};
@@ -52,7 +51,7 @@ pub(in super::super) fn road(region: &Region, ask: &Ask) -> Result<Stored, Probl
     let (edges, told) = match whole {
         Some(whole) => (whole.edges(network).collect(), told(network, whole)),
         None => {
-            let edges: Vec<u32> = edges_of(network, way).collect();
+            let edges: Vec<EdgeNo> = edges_of(network, way).collect();
             let told = unnamed(network, &edges).ok_or_else(no_way)?;
             (edges, told)
         }
@@ -60,11 +59,11 @@ pub(in super::super) fn road(region: &Region, ask: &Ask) -> Result<Stored, Probl
     Ok(Stored::new(GEOJSON, members(&roads, &edges, &told, numbers.as_ref()).to_string().into_bytes()))
 }
 
-fn members(roads: &RoadIndex, edges: &[u32], told: &Told, numbers: Option<&Numbers>) -> Value {
+fn members(roads: &RoadIndex, edges: &[EdgeNo], told: &Told, numbers: Option<&Numbers>) -> Value {
     let network = roads.network();
     let drawn = edges.iter().take(MOST_EDGES);
     let features: Vec<Value> = drawn.filter_map(|&edge| feature(network, edge, numbers)).collect();
-    let positions = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
+    let positions = edges.iter().filter_map(|&edge| network.edges.get(edge.index()));
     let bounds = Bounds::around(positions.flat_map(|edge| network.positions(edge)));
     json!({
         "type": "FeatureCollection",
@@ -81,8 +80,8 @@ fn members(roads: &RoadIndex, edges: &[u32], told: &Told, numbers: Option<&Numbe
     })
 }
 
-fn feature(network: &Network, index: u32, numbers: Option<&Numbers>) -> Option<Value> {
-    let edge = network.edges.get(index as usize)?;
+fn feature(network: &Network, index: EdgeNo, numbers: Option<&Numbers>) -> Option<Value> {
+    let edge = network.edges.get(index.index())?;
     let line: Vec<(f64, f64)> = network.positions(edge).map(crate::osm::LonLat::degrees).collect();
     let own = numbers.and_then(|numbers| numbers.of(index));
     let words = own.map(|own| verdict_words(own.verdict));
@@ -103,9 +102,9 @@ fn feature(network: &Network, index: u32, numbers: Option<&Numbers>) -> Option<V
 }
 
 /// The edges of a way by its id.
-pub(super) fn edges_of_way(network: &Network, way_id: i64) -> Option<Range<u32>> {
+pub(super) fn edges_of_way(network: &Network, way_id: i64) -> Option<impl Iterator<Item = EdgeNo> + use<>> {
     let way = network.roads.binary_search_by_key(&way_id, |road| road.way_id).ok()?;
-    Some(edges_of(network, way as u32)).filter(|edges| !edges.is_empty())
+    Some(edges_of(network, way as u32)).filter(|edges| edges.len() > 0)
 }
 
 /// Name, ref and class that most edges of a road have. The one that the road is one by comes first in its title.
@@ -127,8 +126,8 @@ pub(super) fn told(network: &Network, whole: &WholeRoad) -> Told {
     Told { road: RoadName { highway, name, reference }, title }
 }
 
-fn unnamed(network: &Network, edges: &[u32]) -> Option<Told> {
-    let edge = network.edges.get(*edges.first()? as usize)?;
+fn unnamed(network: &Network, edges: &[EdgeNo]) -> Option<Told> {
+    let edge = network.edges.get(edges.first()?.index())?;
     let road = network.road(edge);
     let road = RoadName { highway: highway(road.class, road.link), name: None, reference: None };
     Some(Told { road, title: network.title(edge) })

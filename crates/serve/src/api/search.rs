@@ -13,6 +13,7 @@ use super::super::search::{WholeRoad, coordinates};
 use super::answered;
 use super::road::{Told, edges_of_way, told};
 use super::summary::Numbers;
+use crate::network::EdgeNo;
 use crate::route::Position;
 use crate::rows::{Bounds, RoadName};
 
@@ -48,7 +49,7 @@ pub(in super::super) fn search(region: &Region, ask: &Ask) -> Result<Stored, Pro
     let left = limit.saturating_sub(results.len());
     results.extend(finder.find(asked).iter().take(left).map(|hit| whole(&roads, hit.road)));
     results.truncate(limit);
-    let members = |(mut members, edges): (Value, Vec<u32>)| {
+    let members = |(mut members, edges): (Value, Vec<EdgeNo>)| {
         let numbers = numbers.as_ref().filter(|_| !edges.is_empty());
         members["summary"] = json!(numbers.map(|numbers| numbers.summary(&roads, edges.into_iter())));
         members
@@ -57,26 +58,26 @@ pub(in super::super) fn search(region: &Region, ask: &Ask) -> Result<Stored, Pro
 }
 
 /// A result, and the edges that belong to it.
-type Found = (Value, Vec<u32>);
+type Found = (Value, Vec<EdgeNo>);
 
 fn edge(roads: &RoadIndex, id: i64) -> Option<Found> {
     let index = roads.edge(id)?;
     let network = roads.network();
-    let bounds = Bounds::around(network.positions(network.edges.get(index as usize)?))?;
+    let bounds = Bounds::around(network.positions(network.edges.get(index.index())?))?;
     found(roads, "edge", &id.to_string(), bounds, vec![index])
 }
 
 fn way(roads: &RoadIndex, id: i64) -> Option<Found> {
-    let edges: Vec<u32> = edges_of_way(roads.network(), id)?.collect();
+    let edges: Vec<EdgeNo> = edges_of_way(roads.network(), id)?.collect();
     let network = roads.network();
-    let positions = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
+    let positions = edges.iter().filter_map(|&edge| network.edges.get(edge.index()));
     let bounds = Bounds::around(positions.flat_map(|edge| network.positions(edge)))?;
     found(roads, "way", &id.to_string(), bounds, edges)
 }
 
 fn whole(roads: &RoadIndex, road: &WholeRoad) -> Found {
     let network = roads.network();
-    let edges: Vec<u32> = road.edges(network).collect();
+    let edges: Vec<EdgeNo> = road.edges(network).collect();
     let id = road.ways.first().and_then(|&way| network.roads.get(way as usize)).map_or(0, |way| way.way_id);
     let Some((mut members, edges)) = found(roads, "road", &id.to_string(), road.bounds, edges) else {
         return (Value::Null, Vec::new());
@@ -96,7 +97,7 @@ fn of_place(roads: &RoadIndex, place: Position) -> Found {
     let name = format!("{:.5}, {:.5}", place.lat, place.lon);
     let nearest = roads.nearest(place, NEAR_M);
     let network = roads.network();
-    let edge = nearest.and_then(|(edge, _)| network.edges.get(edge as usize));
+    let edge = nearest.and_then(|(edge, _)| network.edges.get(edge.index()));
     let beside = edge.zip(nearest).map(|(edge, (_, m))| format!("{name}: {m:.0} m from {}", network.title(edge)));
     let mut members = json!({
         "kind": "place",
@@ -115,9 +116,9 @@ fn of_place(roads: &RoadIndex, place: Position) -> Found {
 }
 
 /// The members of a result. Its point is a vertex of its middle edge.
-fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<u32>) -> Option<Found> {
+fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<EdgeNo>) -> Option<Found> {
     let network = roads.network();
-    let middle = network.edges.get(*edges.get(edges.len() / 2)? as usize)?;
+    let middle = network.edges.get(edges.get(edges.len() / 2)?.index())?;
     let line: Vec<_> = network.positions(middle).collect();
     let road = network.road(middle);
     let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id));

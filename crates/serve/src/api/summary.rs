@@ -7,6 +7,7 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::roads::RoadIndex;
 use super::super::tiles::severity;
+use crate::network::EdgeNo;
 use crate::osm::facts::Policy;
 use crate::rows::{MapNumbers, SetKey};
 use crate::words::{Named as _, VerdictKind, verdict_words};
@@ -24,14 +25,14 @@ impl Numbers {
         Ok(region.numbers(roads, SetKey { vehicle: &certified.vehicle.id, policy })?.map(Self))
     }
 
-    pub(super) fn of(&self, edge: u32) -> Option<&MapNumbers> {
-        self.0.get(edge as usize)
+    pub(super) fn of(&self, edge: EdgeNo) -> Option<&MapNumbers> {
+        self.0.get(edge.index())
     }
 
     /// The summary of a road with these edges. Turns at its junctions are not in it.
-    pub(super) fn summary(&self, roads: &RoadIndex, edges: impl Iterator<Item = u32>) -> Value {
+    pub(super) fn summary(&self, roads: &RoadIndex, edges: impl Iterator<Item = EdgeNo>) -> Value {
         let mut sums: Vec<(u32, f64)> = vec![(0, 0.0); VerdictKind::ALL.len()];
-        let mut worst: Option<(u32, &MapNumbers)> = None;
+        let mut worst: Option<(EdgeNo, &MapNumbers)> = None;
         for (edge, numbers) in edges.filter_map(|edge| Some((edge, self.of(edge)?))) {
             let word = verdict_words(numbers.verdict).0;
             if let Some(sum) =
@@ -59,9 +60,9 @@ impl Numbers {
     }
 }
 
-fn worst_members(roads: &RoadIndex, index: u32, numbers: &MapNumbers) -> Option<Value> {
+fn worst_members(roads: &RoadIndex, index: EdgeNo, numbers: &MapNumbers) -> Option<Value> {
     let network = roads.network();
-    let edge = network.edges.get(index as usize)?;
+    let edge = network.edges.get(index.index())?;
     let line: Vec<_> = network.positions(edge).collect();
     let (lon, lat) = line.get(line.len() / 2)?.degrees();
     let (verdict, reason) = verdict_words(numbers.verdict);

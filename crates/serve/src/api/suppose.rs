@@ -12,7 +12,7 @@ use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
 use super::{answered, id};
 use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_with_kerb, verdict};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::route::{CONDITIONAL, PartKind, title};
 use crate::rows::{EdgeRow, SetKey, TurnRow};
@@ -80,13 +80,13 @@ impl Case<'_> {
         self.roads.network()
     }
 
-    fn edge(&self, edge: u32, width_m: f64) -> Result<Value, Problem> {
+    fn edge(&self, edge: EdgeNo, width_m: f64) -> Result<Value, Problem> {
         let (network, policy) = (self.network(), self.settings().policy);
-        let facts = &network.edges[edge as usize];
+        let facts = &network.edges[edge.index()];
         let no_width =
             || Problem::not_found(format!("edge {}: it has no width that another one could replace", facts.id));
         let now_m = width_m_of(network, edge, policy).ok_or_else(no_width)?;
-        let stroke = *network.strokes_of_edges().get(edge as usize).ok_or_else(no_width)?;
+        let stroke = *network.strokes_of_edges().get(edge.index()).ok_or_else(no_width)?;
         let results = stroke_at_least(network, stroke, width_m, self.model, self.settings(), self.stop)?;
         let own = results.iter().find(|(other, _)| *other == edge).map(|(_, result)| result).ok_or_else(no_width)?;
         if let Verdict::Forbidden(_) | Verdict::Unknown(_) = verdict(self.network(), facts, self.model, None, Some(own))
@@ -106,7 +106,7 @@ impl Case<'_> {
         for (other, result) in results.iter().filter(|(other, result)| *other != edge && result.safe()) {
             self.stop.check()?;
             let (other_id, length_m) =
-                (network.edges[*other as usize].id, network.length_m(&network.edges[*other as usize]));
+                (network.edges[other.index()].id, network.length_m(&network.edges[other.index()]));
             let Some(row) = self.row(other_id)? else { continue };
             if matches!(row.certificate.verdict, Verdict::Unsafe(_)) {
                 opens_m += length_m;
@@ -169,8 +169,8 @@ fn rsc_m(result: &SpanResult) -> Option<f64> {
     result.rsc_m.filter(|rsc_m| rsc_m.is_finite()).map(|rsc_m| (rsc_m * 1000.0).floor() / 1000.0)
 }
 
-fn width_m_of(network: &Network, edge: u32, policy: Policy) -> Option<f64> {
-    let strip = network.section(network.edges.get(edge as usize)?).strip(policy)?;
+fn width_m_of(network: &Network, edge: EdgeNo, policy: Policy) -> Option<f64> {
+    let strip = network.section(network.edges.get(edge.index())?).strip(policy)?;
     Some(f64::from(strip.width_m())).filter(|&width_m| width_m > 0.0)
 }
 
@@ -190,7 +190,7 @@ fn turn_row(region: &Region, vehicle: &str, policy: Policy, id: i64) -> Result<O
 /// What may be supposed of an edge, for a slider. Null if no width decides there.
 pub(super) fn of_edge(
     network: &Network,
-    edge: u32,
+    edge: EdgeNo,
     model: &Model,
     settings: &Settings,
     row: Option<&EdgeRow>,
@@ -215,11 +215,11 @@ pub(super) fn of_edge(
 }
 
 /// A width that was certified to do for an edge that lacks room, metres: the stored one, or if that is an estimate, one that is looked for now.
-fn certified_need_m(network: &Network, edge: u32, model: &Model, settings: &Settings, row: &EdgeRow) -> Option<f64> {
+fn certified_need_m(network: &Network, edge: EdgeNo, model: &Model, settings: &Settings, row: &EdgeRow) -> Option<f64> {
     if settings.needs.include(Needs::Edges) || row.certificate.verdict != Verdict::Unsafe(UnsafeReason::Width) {
         return row.need_width_m;
     }
-    let stroke = *network.strokes_of_edges().get(edge as usize)?;
+    let stroke = *network.strokes_of_edges().get(edge.index())?;
     edge_need(network, stroke, edge, model, settings)
 }
 

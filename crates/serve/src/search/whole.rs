@@ -2,10 +2,9 @@
 //! `Hauptstraße` of each village is a road of its own.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use super::fold;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::StringId;
 use crate::rows::Bounds;
 
@@ -32,16 +31,16 @@ pub(in super::super) struct WholeRoad {
 
 impl WholeRoad {
     /// The road's edges, in order of the network.
-    pub(in super::super) fn edges<'r>(&'r self, network: &'r Network) -> impl Iterator<Item = u32> + 'r {
+    pub(in super::super) fn edges<'r>(&'r self, network: &'r Network) -> impl Iterator<Item = EdgeNo> + 'r {
         self.ways.iter().flat_map(|&way| edges_of(network, way))
     }
 }
 
-/// The edges of a way, as indices into [`Network::edges`], which are sorted by way.
-pub(in super::super) fn edges_of(network: &Network, way: u32) -> Range<u32> {
+/// The edges of a way. [`Network::edges`] are sorted by way.
+pub(in super::super) fn edges_of(network: &Network, way: u32) -> impl ExactSizeIterator<Item = EdgeNo> + use<> {
     let first = network.edges.partition_point(|edge| edge.road < way);
     let end = network.edges.partition_point(|edge| edge.road <= way);
-    first as u32..end as u32
+    (first..end).map(EdgeNo::at)
 }
 
 /// A way that has edges.

@@ -122,13 +122,14 @@ fn cosine([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::EdgeNo;
     use crate::osm::facts::{Direction, Oneway};
     use crate::rows::{EdgeKey, MapNumbers, RoadName};
     use crate::verdict::{UnknownReason, Verdict};
 
     fn edge_key(index: u32, way_id: i64) -> EdgeKey {
         let (from_node, to_node, direction) = (0, 1, Direction::Forward);
-        EdgeKey { index, id: i64::from(index), way_id, from_node, to_node, direction }
+        EdgeKey { index: EdgeNo::new(index), id: i64::from(index), way_id, from_node, to_node, direction }
     }
 
     fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge<'static> {

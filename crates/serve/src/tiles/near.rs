@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::roads::RoadIndex;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::RoadClass;
 use crate::rows::{Bounds, EdgeKey, MapEdge, MapNumbers, RoadName, SetKey};
 
@@ -26,15 +26,20 @@ pub(super) fn edges<'r>(
         && let Some(numbers) = region.numbers(roads, set)?
     {
         let network = roads.network();
-        let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
+        let row = |&index: &EdgeNo| map_edge(network, index, *numbers.get(index.index())?, classes);
         return Ok(roads.near(bounds).par_iter().with_min_len(LEAST_IN_PARALLEL).filter_map(row).collect());
     }
     region.read(|database| database.map_edges(set, bounds, classes))
 }
 
 /// `None` if the edge is of another class.
-fn map_edge<'r>(network: &'r Network, index: u32, numbers: MapNumbers, classes: &[RoadClass]) -> Option<MapEdge<'r>> {
-    let (key, edge) = (EdgeKey::of(network, index)?, network.edges.get(index as usize)?);
+fn map_edge<'r>(
+    network: &'r Network,
+    index: EdgeNo,
+    numbers: MapNumbers,
+    classes: &[RoadClass],
+) -> Option<MapEdge<'r>> {
+    let (key, edge) = (EdgeKey::of(network, index)?, network.edges.get(index.index())?);
     let road = network.road(edge);
     classes.contains(&road.class).then(|| MapEdge {
         edge: key,

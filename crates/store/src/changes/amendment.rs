@@ -7,7 +7,7 @@ use sqlx::Row as _;
 use sqlx::query::Query;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::network::{Portion, PortionRestriction};
+use crate::network::{EdgeNo, Portion, PortionRestriction};
 use crate::osm::LonLat;
 use netcert_roads::turns::{JunctionArea, TurnFacts};
 use netcert_rows::{Bounds, EdgeMeasure};
@@ -36,7 +36,7 @@ pub struct Amendment<'a> {
     /// Their turns. They have the same ids in the same order.
     pub turns: &'a [TurnFacts],
     /// The edges that were certified again, in order, with the measures of their corridors.
-    pub measures: Vec<(u32, EdgeMeasure)>,
+    pub measures: Vec<(EdgeNo, EdgeMeasure)>,
     /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
     pub junctions: Option<(Vec<i64>, Vec<JunctionArea>)>,
     /// Certificates that were made again.
@@ -73,7 +73,7 @@ async fn set_box(c: &mut SqliteConnection, layers: &'static str, around: Option<
 
 /// An edge whose row differs.
 struct Changed {
-    index: u32,
+    index: EdgeNo,
     row: EdgeRow,
     /// Whether the row has the measures of its corridor. If not, those of the database stand.
     measured: bool,
@@ -83,7 +83,7 @@ struct Changed {
 
 /// Edges one after the other whose numbers of road, positions and narrow places moved by the same amounts.
 struct Moved {
-    edges: std::ops::RangeInclusive<u32>,
+    edges: std::ops::RangeInclusive<EdgeNo>,
     by: [i64; 4],
 }
 
@@ -141,9 +141,9 @@ impl EdgeChanges {
         }
     }
 
-    fn move_on(&mut self, index: u32, by: [i64; 4]) {
+    fn move_on(&mut self, index: EdgeNo, by: [i64; 4]) {
         match self.moved.last_mut() {
-            Some(last) if last.by == by && last.edges.end() + 1 == index => {
+            Some(last) if last.by == by && last.edges.end().get() + 1 == index.get() => {
                 last.edges = *last.edges.start()..=index;
             }
             _ if by != [0; 4] => self.moved.push(Moved { edges: index..=index, by }),
@@ -166,7 +166,7 @@ async fn edges(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Optio
         let sql = "UPDATE edge SET road_no = road_no + ?, shape_start = shape_start + ?, \
                    narrowing_start = narrowing_start + ?, narrowing_end = narrowing_end + ? WHERE fid BETWEEN ? AND ?";
         let update = by.into_iter().fold(sqlx::query(sql), Query::bind);
-        update.bind(edges.start() + 1).bind(edges.end() + 1).execute(&mut *c).await?;
+        update.bind(edges.start().get() + 1).bind(edges.end().get() + 1).execute(&mut *c).await?;
     }
     let (mut bulk, mut boxes) = (Bulk::new("edge", 41), Bulk::new("rtree_edge_geom", 5));
     for Changed { index, mut row, measured, road, ranges } in changed {

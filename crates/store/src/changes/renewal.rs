@@ -5,7 +5,7 @@ use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::account::AccountRow;
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
@@ -47,7 +47,7 @@ pub struct Renewal<'a> {
     /// The new register.
     pub register: &'a Register,
     /// Edges whose widths or centrelines may differ, with the measures of their corridors.
-    pub edges: &'a [(u32, EdgeMeasure)],
+    pub edges: &'a [(EdgeNo, EdgeMeasure)],
     /// All turns of the network, if the database has turns and any of their kerbs may differ.
     pub turns: Option<&'a [TurnFacts]>,
     /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
@@ -98,7 +98,7 @@ pub(crate) struct PackedRenewal {
 pub(crate) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
-    let edge = |known: &EdgeCertificate| CompactCertificate::edge(known).map_err(|why| unsound(known.edge, why));
+    let edge = |known: &EdgeCertificate| CompactCertificate::edge(known).map_err(|why| unsound(known.edge.get(), why));
     let turn = |known: &TurnCertificate| CompactCertificate::turn(known).map_err(|why| unsound(known.turn, why));
     let mut edges = set.edges.iter().map(edge).collect::<Result<Vec<_>, _>>()?;
     let mut turns = set.turns.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
@@ -190,7 +190,7 @@ impl Triggers {
 }
 
 /// Writes the widths of edges and the measures of their corridors. No geometry changes.
-async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32, EdgeMeasure)]) -> Sql<()> {
+async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(EdgeNo, EdgeMeasure)]) -> Sql<()> {
     if edges.is_empty() {
         return Ok(());
     }
@@ -203,7 +203,7 @@ async fn change_edges(c: &mut SqliteConnection, network: &Network, edges: &[(u32
     .await?;
     let mut bulk = Bulk::new("changed", 9);
     for &(index, measure) in edges {
-        let edge = network.edges.get(index as usize).ok_or_else(|| content(format!("edge {index} is missing")))?;
+        let edge = network.edges.get(index.index()).ok_or_else(|| content(format!("edge {index} is missing")))?;
         bulk.add(i64::from(index) + 1);
         add_widths(&mut bulk, &network.section(edge));
         bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()));

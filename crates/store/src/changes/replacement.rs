@@ -42,7 +42,7 @@ impl Database {
         let written = self.acceptable(settings)?;
         let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
         let pack = |certificate: EdgeCertificate| {
-            CompactCertificate::edge(&certificate).map_err(|why| unsound(certificate.edge, why))
+            CompactCertificate::edge(&certificate).map_err(|why| unsound(certificate.edge.get(), why))
         };
         let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<CompactCertificate>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);

@@ -6,6 +6,7 @@ use futures_util::TryStreamExt as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
+use crate::network::EdgeNo;
 use crate::osm::LonLat;
 use crate::verdict::Verdict;
 use crate::words::Named;
@@ -42,6 +43,11 @@ pub(crate) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
     index
         .filter(|&index| (index as usize) < length)
         .ok_or_else(|| content(format!("row {number} is referred to, but missing")))
+}
+
+/// The edge that has this `fid`.
+pub(crate) fn edge_of(fid: u32) -> EdgeNo {
+    EdgeNo::new(fid.saturating_sub(1))
 }
 
 /// The value of the word in a column.

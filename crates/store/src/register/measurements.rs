@@ -2,7 +2,7 @@
 
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use netcert_roads::turns::TurnFacts;
 use netcert_rows::Measurement;
 
@@ -14,8 +14,8 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn measured_on(&mut self, network: &Network, edge: u32) -> Result<Vec<Measurement>, StoreError> {
-        let ids: Vec<i64> = network.edges.get(edge as usize).map(|edge| edge.id).into_iter().collect();
+    pub fn measured_on(&mut self, network: &Network, edge: EdgeNo) -> Result<Vec<Measurement>, StoreError> {
+        let ids: Vec<i64> = network.edges.get(edge.index()).map(|edge| edge.id).into_iter().collect();
         self.measured(&ids, &[])
     }
 
@@ -24,7 +24,7 @@ impl Database {
     /// # Errors
     /// The file cannot be read.
     pub fn measured_at(&mut self, network: &Network, turn: &TurnFacts) -> Result<Vec<Measurement>, StoreError> {
-        let edge = |index: u32| network.edges.get(index as usize);
+        let edge = |index: EdgeNo| network.edges.get(index.index());
         let way = [turn.movement.from].into_iter().chain(turn.through.iter().copied()).chain([turn.movement.to]);
         let way: Vec<_> = way.filter_map(edge).collect();
         let corners: Vec<_> = way.array_windows().map(|[from, to]| (from.to_node, [from.id, to.id])).collect();

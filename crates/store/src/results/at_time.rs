@@ -14,8 +14,10 @@ use sqlx::sqlite::SqliteConnection;
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::columns::names::verdict_no;
+use crate::columns::read::edge_of;
 use crate::database::Database;
 use crate::error::{StoreError, content};
+use crate::network::EdgeNo;
 use crate::osm::facts::{At, Legal};
 use crate::roads::network_read::{self, RuleSets};
 use crate::vehicle::Vehicle;
@@ -34,7 +36,7 @@ const TABLES: [(&str, &str); 2] =
     [("certificate_compact", "need_cm"), ("turn_certificate_compact", "need_kerb_cm, need_flare_cm, path_no")];
 
 /// The edges with rules that depend on the time, by index, each with its country.
-type Timed = FxHashMap<u32, (Legal, [u8; 2])>;
+type Timed = FxHashMap<EdgeNo, (Legal, [u8; 2])>;
 
 impl Database {
     /// From now on, queries of certificates give the verdicts at this time, which is local time of the place. A second call sets another time.
@@ -64,9 +66,9 @@ async fn set_time(c: &mut SqliteConnection, time: DateTime, rings: &Rings) -> Sq
             Ok((no, vehicle))
         })
         .collect::<Sql<_>>()?;
-    let verdict = |vehicle: u32, edges: &[u32]| -> Option<u8> {
+    let verdict = |vehicle: u32, edges: &[EdgeNo]| -> Option<u8> {
         let vehicle = vehicles.get(&vehicle).filter(|_| edges.iter().any(|edge| timed.contains_key(edge)))?;
-        let at = |edge: &u32| {
+        let at = |edge: &EdgeNo| {
             let (legal, country) = timed.get(edge)?;
             legal.judge(vehicle, At::Time { time, country: *country }).verdict
         };
@@ -105,14 +107,14 @@ async fn timed(c: &mut SqliteConnection) -> Sql<Timed> {
     let mut sets = RuleSets::default();
     let rows = sqlx::query(sql).fetch_all(c).await?;
     let of = |row| -> Sql<_> {
-        let fid: u32 = sqlx::Row::try_get(row, 0)?;
-        Ok((fid.saturating_sub(1), (network_read::legal(row, 2, [10, 11], &mut sets)?, network_read::country(row, 1)?)))
+        let fid = sqlx::Row::try_get(row, 0)?;
+        Ok((edge_of(fid), (network_read::legal(row, 2, [10, 11], &mut sets)?, network_read::country(row, 1)?)))
     };
     rows.iter().map(of).collect()
 }
 
 /// The rows of a table that time decides: vehicle, corridor, `fid` and the edges that it leads over.
-async fn rows(c: &mut SqliteConnection, table: &str, rings: &Rings) -> Sql<Vec<(u32, u32, u32, Vec<u32>)>> {
+async fn rows(c: &mut SqliteConnection, table: &str, rings: &Rings) -> Sql<Vec<(u32, u32, u32, Vec<EdgeNo>)>> {
     let time_no = verdict_no(TIME).map_or(-1, i32::from);
     let holds = format!("c.verdict_no = {time_no} AND c.rsc_mm >= 0 AND c.hinge_margin_cdeg >= 0");
     let edges = if table == "certificate_compact" {
@@ -125,10 +127,10 @@ async fn rows(c: &mut SqliteConnection, table: &str, rings: &Rings) -> Sql<Vec<(
     };
     let mut out = Vec::new();
     for row in sqlx::query(AssertSqlSafe(edges)).fetch_all(c).await? {
-        let index = |column| -> Sql<u32> { Ok(row.try_get::<u32, _>(column)?.saturating_sub(1)) };
+        let index = |column| -> Sql<EdgeNo> { Ok(edge_of(row.try_get(column)?)) };
         let mut edges = vec![index(3)?, index(4)?];
         if let Some((first, last)) = row.try_get::<Option<u32>, _>(5)?.zip(row.try_get::<Option<u32>, _>(6)?) {
-            let arcs = [first, last].map(|fid| fid.saturating_sub(1));
+            let arcs = [first, last].map(edge_of);
             // Where the arcs between are not known, the time decides nothing.
             let Some(arcs) = rings.through(arcs) else { continue };
             edges.extend(arcs);

@@ -43,7 +43,7 @@ impl CompactCertificate {
     /// Packs the certificate of an edge. The error says why it may not be stored.
     pub(crate) fn edge(certificate: &EdgeCertificate) -> Result<Self, String> {
         let needs_cm = [need_cm(certificate.need_width_m), None];
-        Ok(Self { needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.edge)? })
+        Ok(Self { needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.edge.get())? })
     }
 
     /// Packs the certificate of a turn. The error says why it may not be stored.

@@ -5,11 +5,12 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
+use crate::network::EdgeNo;
 use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
 use crate::columns::names::width_columns;
-use crate::columns::read::{verdict, word_or_none};
+use crate::columns::read::{edge_of, verdict, word_or_none};
 use crate::database::Database;
 use crate::database::streamed::Streamed;
 use crate::error::{StoreError, content};
@@ -20,7 +21,7 @@ use crate::roads::key::edge_key;
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
-pub type StraightOn = (u32, Option<u32>);
+pub type StraightOn = (EdgeNo, Option<EdgeNo>);
 
 impl Database {
     /// The facts of every edge for a vehicle. There are no rows if the vehicle is not certified under this policy.
@@ -58,16 +59,16 @@ impl Database {
         Ok(self.streamed(sql, vehicle, policy, turns::turn_row))
     }
 
-    /// The sequences of edges (indices into `Network::edges`) of turn restrictions. They are few, so all are read at once.
+    /// The sequences of edges (by their numbers) of turn restrictions. They are few, so all are read at once.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn forbidden_sequences(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+    pub fn forbidden_sequences(&mut self) -> Result<Vec<Vec<EdgeNo>>, StoreError> {
         self.session.run(async |c| {
             let sql = "SELECT r.restriction_no, e.fid FROM restriction AS r JOIN restriction_edge AS e \
                        ON e.position > r.edge_start AND e.position <= r.edge_end ORDER BY r.restriction_no, e.position";
             let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
-            let edges = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            let edges = |rows: &[(i64, u32)]| rows.iter().map(|row| edge_of(row.1)).collect();
             Ok(rows.chunk_by(|a, b| a.0 == b.0).map(edges).collect())
         })
     }
@@ -85,19 +86,19 @@ impl Database {
         Ok(self.streamed_plainly(sql.to_owned(), straight_on))
     }
 
-    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order. They are few, so all are read at
+    /// The arcs of roundabouts (by their numbers), each ring in driving order. They are few, so all are read at
     /// once.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn rings(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+    pub fn rings(&mut self) -> Result<Vec<Vec<EdgeNo>>, StoreError> {
         self.session.run(async |c| {
             let sql = "SELECT s.stroke_no, a.fid \
                        FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
                        JOIN edge AS e ON e.fid = a.fid JOIN road AS r ON r.road_no = e.road_no \
                        WHERE r.roundabout ORDER BY s.stroke_no, a.position";
             let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
-            let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| edge_of(row.1)).collect();
             Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
         })
     }
@@ -105,7 +106,7 @@ impl Database {
 
 fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
     let next: Option<u32> = row.try_get(1)?;
-    Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
+    Ok((edge_of(row.try_get(0)?), next.map(edge_of)))
 }
 
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
@@ -124,9 +125,8 @@ fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
 
 fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
     let fid: u32 = row.try_get(0)?;
-    let index = |column| -> Sql<u32> { Ok(row.try_get::<u32, _>(column)?.saturating_sub(1)) };
-    let arc =
-        |column| -> Sql<Option<u32>> { Ok(row.try_get::<Option<u32>, _>(column)?.map(|fid| fid.saturating_sub(1))) };
+    let index = |column| -> Sql<EdgeNo> { Ok(edge_of(row.try_get(column)?)) };
+    let arc = |column| -> Sql<Option<EdgeNo>> { Ok(row.try_get::<Option<u32>, _>(column)?.map(edge_of)) };
     Ok(TurnStep {
         turn: fid.saturating_sub(1),
         from: index(1)?,

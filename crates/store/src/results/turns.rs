@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::network::{Movement, Network, PassageKind};
+use crate::network::{EdgeNo, Movement, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::words::VerdictKind;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
@@ -70,7 +70,7 @@ impl TurnSet<'_> {
 /// A turn with all that its row says: it can be written without the network.
 #[derive(PartialEq, Serialize, Deserialize)]
 pub(crate) struct Record {
-    /// With indices of edges of the whole network, and no index of a restriction.
+    /// With numbers of edges of the whole network, and no index of a restriction.
     facts: TurnFacts,
     via_node: i64,
     /// The tagged words of the restriction that forbids the turn.
@@ -80,12 +80,12 @@ pub(crate) struct Record {
 
 /// The place of a turn in the order of the whole network ([`netcert_roads::turns::turn_facts`]): passages last, then by node, by edge before and by
 /// edge after. Passages have no node.
-pub(crate) type TurnKey = (bool, i64, u32, u32);
+pub(crate) type TurnKey = (bool, i64, EdgeNo, EdgeNo);
 
 impl Record {
     /// The record of a turn of a network. `number` returns the number of an edge in the whole network.
-    pub(crate) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(u32) -> u32) -> Self {
-        let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
+    pub(crate) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(EdgeNo) -> EdgeNo) -> Self {
+        let via_node = network.edges.get(facts.movement.from.index()).map_or(0, |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
         let restriction = forbids.map(|restriction| restriction.kind.name());
         let passage = network.passage_kind(&facts.through);

@@ -5,14 +5,14 @@ use sqlx::sqlite::SqliteRow;
 
 use netcert_rows::{EdgeKey, RoadName, TurnKey};
 
-use crate::columns::read::word;
+use crate::columns::read::{edge_of, word};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// An edge from `fid` in column 0, and `edge_id`, `way_id`, `from_node`, `to_node`, `direction` from the column `at` on.
 pub(crate) fn edge_key(row: &SqliteRow, at: usize) -> Sql<EdgeKey> {
     Ok(EdgeKey {
-        index: row.try_get::<u32, _>(0)?.saturating_sub(1),
+        index: edge_of(row.try_get(0)?),
         id: row.try_get(at)?,
         way_id: row.try_get(at + 1)?,
         from_node: row.try_get(at + 2)?,

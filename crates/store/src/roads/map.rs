@@ -6,6 +6,7 @@ use futures_util::{StreamExt as _, TryStreamExt as _};
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
+use crate::network::EdgeNo;
 use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named;
 use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin, SetKey};
@@ -23,8 +24,8 @@ type Sql<T> = Result<T, sqlx::Error>;
 pub enum TurnsOf {
     /// The turns out of edges that touch the box.
     Box(Bounds),
-    /// The turns out of this edge or into it (index into `Network::edges`).
-    Edge(u32),
+    /// The turns out of this edge or into it.
+    Edge(EdgeNo),
 }
 
 impl Database {

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
-use crate::network::{Areas, Crossings, Edge, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
+use crate::network::{Areas, Crossings, Edge, EdgeNo, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
 use crate::osm::facts::class_and_link;
 use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
 use crate::osm::{LonLat, StringPool};
@@ -59,7 +59,8 @@ async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     })
     .await?;
     let stroke_edges =
-        rows(c, "SELECT fid FROM stroke_edge ORDER BY position", |row| index(row, 0, edges.len())).await?;
+        rows(c, "SELECT fid FROM stroke_edge ORDER BY position", |row| index(row, 0, edges.len()).map(EdgeNo::new))
+            .await?;
     let Restrictions { all: restrictions, edges: restriction_edges } = restrictions::read(c, edges.len()).await?;
     let areas = Areas::default();
     let mut network = Network {

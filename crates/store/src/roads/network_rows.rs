@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::network::{Area, Edge, Narrowing, Portion, PortionRestriction, Road};
+use crate::network::{Area, Edge, EdgeNo, Narrowing, Portion, PortionRestriction, Road};
 use crate::osm::changes::Kind;
 use crate::osm::facts::{BackdropKind, CrossSection};
 use crate::osm::{Backdrop, LonLat};
@@ -41,16 +41,16 @@ pub(crate) struct EdgeRow {
 /// A stroke: edges of the whole network, in driving order.
 #[derive(PartialEq, Serialize, Deserialize)]
 pub(crate) struct StrokeRow {
-    pub(crate) approach: Vec<u32>,
-    pub(crate) edges: Vec<u32>,
+    pub(crate) approach: Vec<EdgeNo>,
+    pub(crate) edges: Vec<EdgeNo>,
     pub(crate) closed: bool,
 }
 
 /// The rows of a network by their indices in it; strokes by their first edge.
 pub(crate) struct NetworkRows {
     pub(crate) roads: Sorter<u32, RoadRow>,
-    pub(crate) edges: Sorter<u32, EdgeRow>,
-    pub(crate) strokes: Sorter<u32, StrokeRow>,
+    pub(crate) edges: Sorter<EdgeNo, EdgeRow>,
+    pub(crate) strokes: Sorter<EdgeNo, StrokeRow>,
 }
 
 impl NetworkRows {
@@ -103,9 +103,9 @@ pub(crate) struct NetworkRow {
     pub(crate) edge: EdgeRow,
 }
 
-/// The edges that a portion owns with their indices in the whole network, in order. `measures` has one entry per edge of the portion's
+/// The edges that a portion owns with their numbers in the whole network, in order. `measures` has one entry per edge of the portion's
 /// network, or is empty.
-pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Iterator<Item = (u32, NetworkRow)> {
+pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Iterator<Item = (EdgeNo, NetworkRow)> {
     let network = &portion.network;
     let mut begin = 0;
     let chunks = network.edges.chunk_by(|a, b| a.road == b.road).map(move |of_road| {
@@ -125,7 +125,7 @@ pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Ite
                 road: Road { name: None, reference: None, ..road.clone() },
             }
         };
-        let owned = (first_index..).zip(of_road).filter(|(index, _)| portion.owns(*index));
+        let owned = (first_index..).map(EdgeNo::new).zip(of_road).filter(|(index, _)| portion.owns(*index));
         Some(owned.map(move |(index, edge)| {
             let row = EdgeRow {
                 edge: Edge { road: 0, shape: 0..0, narrowings: 0..0, ..edge.clone() },
@@ -134,9 +134,9 @@ pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Ite
                 shape: network.shapes[edge.shape.start as usize..edge.shape.end as usize].to_vec(),
                 narrowings: network.narrowings[edge.narrowings.start as usize..edge.narrowings.end as usize].to_vec(),
                 section: network.section(edge),
-                measure: measures.get(index as usize).copied().unwrap_or_default(),
+                measure: measures.get(index.index()).copied().unwrap_or_default(),
             };
-            let road = (index == first_index).then(&road);
+            let road = (index.get() == first_index).then(&road);
             (portion.edge(index), NetworkRow { road, edge: row })
         }))
     });
@@ -148,7 +148,7 @@ pub(crate) fn stroke_rows(portion: &Portion) -> impl Iterator<Item = StrokeRow> 
     let network = &portion.network;
     portion.strokes().map(|stroke| {
         let stroke = &network.strokes[stroke as usize];
-        let edges = |range: &Range<u32>| -> Vec<u32> {
+        let edges = |range: &Range<u32>| -> Vec<EdgeNo> {
             let edges = &network.stroke_edges[range.start as usize..range.end as usize];
             edges.iter().map(|&edge| portion.edge(edge)).collect()
         };

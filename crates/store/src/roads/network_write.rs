@@ -6,7 +6,7 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use crate::network::Edge;
+use crate::network::{Edge, EdgeNo};
 use crate::osm::LonLat;
 use crate::osm::facts::highway;
 use crate::osm::facts::{CrossSection, Direction, Legal, Limit, RuleSet, Strip};
@@ -127,8 +127,8 @@ impl Ranges {
 async fn roads_and_edges(
     to: &mut impl Takes,
     mut roads: Sorted<u32, RoadRow>,
-    edges: Sorted<u32, EdgeRow>,
-    boxes: &mut Sorter<(u64, u32), Bounds>,
+    edges: Sorted<EdgeNo, EdgeRow>,
+    boxes: &mut Sorter<(u64, EdgeNo), Bounds>,
 ) -> Sql<Written> {
     let mut of_roads = Roads::new();
     let mut current: Option<(u32, RoadRow)> = None;
@@ -138,7 +138,7 @@ async fn roads_and_edges(
     let mut written = Written { edges: 0, bounds: None };
     for row in edges {
         let (index, row) = row?;
-        if index != written.edges {
+        if index.get() != written.edges {
             return Err(content(format!("edge {} is missing or there twice", written.edges)));
         }
         written.edges += 1;
@@ -185,12 +185,12 @@ impl Narrowings {
     }
 }
 
-/// Writes the row of an edge with this index in the whole network, and returns the box around it. `bulk` collects rows of the table `edge`;
+/// Writes the row of an edge with this number in the whole network, and returns the box around it. `bulk` collects rows of the table `edge`;
 /// `road` and `ranges` are those of the edge.
 pub(crate) async fn write_edge(
     to: &mut impl Takes,
     bulk: &mut Bulk,
-    index: u32,
+    index: EdgeNo,
     row: EdgeRow,
     road: &RoadRow,
     ranges: &Ranges,
@@ -277,7 +277,7 @@ pub(crate) async fn write_strokes(
 }
 
 /// Fills the spatial index along a space-filling curve, so that neighbours share pages and pages fill one after the other.
-async fn spatial_index(to: &mut impl Takes, boxes: Sorted<(u64, u32), Bounds>) -> Sql<()> {
+async fn spatial_index(to: &mut impl Takes, boxes: Sorted<(u64, EdgeNo), Bounds>) -> Sql<()> {
     let mut bulk = Bulk::new("rtree_edge_geom", 5);
     for row in boxes {
         let ((_, index), bounds) = row?;

@@ -3,7 +3,7 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::network::{PortionRestriction, Restriction};
+use crate::network::{EdgeNo, PortionRestriction, Restriction};
 use crate::osm::facts::RestrictionKind;
 
 use crate::columns::read::{index, range, rows};
@@ -16,7 +16,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Restrictions {
     pub(crate) all: Vec<Restriction>,
-    pub(crate) edges: Vec<u32>,
+    pub(crate) edges: Vec<EdgeNo>,
 }
 
 /// Inserts the restrictions in their order in the whole network. Their edges must be in the database already.
@@ -54,7 +54,7 @@ pub(crate) async fn replace(c: &mut SqliteConnection, restrictions: &mut [Portio
 /// Reads the restrictions of a network with this number of edges.
 pub(crate) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
     let sql = "SELECT fid FROM restriction_edge ORDER BY position";
-    let sequence = rows(c, sql, |row| index(row, 0, edges)).await?;
+    let sequence = rows(c, sql, |row| index(row, 0, edges).map(EdgeNo::new)).await?;
     let sql = "SELECT relation_id, kind, conditional, edge_start, edge_end FROM restriction ORDER BY restriction_no";
     let all = rows(c, sql, |row| {
         let kind: &str = row.try_get(1)?;

@@ -5,6 +5,7 @@ use sqlx::Row as _;
 use netcert_base::corridor::Side;
 use netcert_rows::DrivingSides;
 
+use crate::columns::read::edge_of;
 use crate::database::Database;
 use crate::error::StoreError;
 
@@ -24,7 +25,7 @@ impl Database {
                 return Ok(Vec::new());
             }
             let rows = sqlx::query(others).bind(mostly_left).fetch_all(c).await?;
-            rows.iter().map(|row| Ok(row.try_get::<u32, _>(0)?.saturating_sub(1))).collect()
+            rows.iter().map(|row| Ok(edge_of(row.try_get(0)?))).collect()
         })?;
         let usual = if mostly_left { Side::Left } else { Side::Right };
         Ok(DrivingSides::new(usual, others))

@@ -10,7 +10,7 @@ use std::io;
 use std::path::Path;
 
 use crate::account::AccountRow;
-use crate::network::{Area, Portion};
+use crate::network::{Area, EdgeNo, Portion};
 use crate::osm::Backdrop;
 use crate::osm::facts::Policy;
 use netcert_roads::turns::{JunctionArea, TurnFacts};
@@ -154,7 +154,7 @@ impl Writer {
         VehicleNo(self.vehicles.len() as u32)
     }
 
-    /// Adds the certificate of one edge, given by its index in the whole network; edges may come in any order. A vehicle and policy with any certificate must get
+    /// Adds the certificate of one edge, given by its number in the whole network; edges may come in any order. A vehicle and policy with any certificate must get
     /// exactly one for every edge. Refuses a `safe` certificate whose numbers do not support it.
     pub fn certificate(
         &mut self,
@@ -163,7 +163,7 @@ impl Writer {
         certificate: &EdgeCertificate,
     ) -> Result<(), StoreError> {
         let packed = CompactCertificate::edge(certificate)
-            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge.get(), detail))?;
         self.push(vehicle, policy, packed)
     }
 
@@ -233,7 +233,7 @@ impl Writer {
         waiting.map_err(|e| StoreError::io(&self.part.target, e))
     }
 
-    /// Adds a certificate of an older database for the edge with this index.
+    /// Adds a certificate of an older database for the edge with this number.
     ///
     /// # Errors
     /// A temporary file cannot be written.
@@ -241,10 +241,10 @@ impl Writer {
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
-        edge: u32,
+        edge: EdgeNo,
         kept: &StoredCertificate,
     ) -> Result<(), StoreError> {
-        self.push(vehicle, policy, CompactCertificate { fid: edge + 1, ..kept.packed })
+        self.push(vehicle, policy, CompactCertificate { fid: edge.get() + 1, ..kept.packed })
     }
 
     /// Adds a certificate of an older database for the turn with this index.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{row_claim, rules};
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
-use crate::network::{Edge, Network, Stroke};
+use crate::network::{Edge, EdgeNo, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
 use crate::rows::EdgeRow;
 use crate::stop::{Stop, Stopped};
@@ -39,7 +39,7 @@ pub struct SetClaim<'a> {
     /// How far plans may shift the centreline, metres.
     pub max_shift_m: f64,
     /// The rows to check, by edge.
-    pub rows: &'a BTreeMap<u32, EdgeRow>,
+    pub rows: &'a BTreeMap<EdgeNo, EdgeRow>,
     /// The plans that are not the centreline, by the stroke's first edge.
     pub plans: &'a BTreeMap<u32, Vec<i32>>,
 }
@@ -86,7 +86,7 @@ impl SetClaim<'_> {
     /// The outcomes of a stroke's rows. If they take too long, no claim is confirmed, nor is anything said of what was found until then.
     fn in_time(&self, chain: &Chain, index: usize, stroke: &Stroke) -> SetReport {
         let edges = self.edges(stroke);
-        let edge = edges.first().and_then(|&edge| self.network.edges.get(edge as usize)).map(|edge| edge.id);
+        let edge = edges.first().and_then(|&edge| self.network.edges.get(edge.index())).map(|edge| edge.id);
         let (number, of) = (index as u64 + 1, self.network.strokes.len() as u64);
         let work = Work { what: "stroke", number, of, edge };
         watch::guarded(work, watch::patience(), || self.stroke(chain, stroke)).unwrap_or_else(|TookTooLong| {
@@ -99,7 +99,7 @@ impl SetClaim<'_> {
         })
     }
 
-    fn edges(&self, stroke: &Stroke) -> &[u32] {
+    fn edges(&self, stroke: &Stroke) -> &[EdgeNo] {
         self.network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize).unwrap_or_default()
     }
 
@@ -116,7 +116,7 @@ impl SetClaim<'_> {
             Ok(made) => {
                 report.swept_km = made.corridor.spacing_m * made.corridor.len() as f64 * 1e-3;
                 let none = vec![0; plan::count(made.corridor.len())];
-                let coefficients = self.plans.get(first).unwrap_or(&none);
+                let coefficients = self.plans.get(&first.get()).unwrap_or(&none);
                 report.rows = self.with_corridor(chain, &made, &rows, coefficients);
             }
         }
@@ -155,7 +155,7 @@ impl SetClaim<'_> {
             }
         }
         let found = subject.check(&claims);
-        let mut found: BTreeMap<u32, Vec<Finding>> = claimed.iter().map(|(edge, _)| *edge).zip(found).collect();
+        let mut found: BTreeMap<EdgeNo, Vec<Finding>> = claimed.iter().map(|(edge, _)| *edge).zip(found).collect();
         let outcome = |row: &EdgeRow| {
             let Some(span) = span_of(row) else { return Outcome::Malformed("its stroke does not pass it".to_owned()) };
             let mut all = found.remove(&row.edge.index).unwrap_or_default();
@@ -177,7 +177,7 @@ impl SetClaim<'_> {
     /// Checks that verdict, reason and numbers agree with each other, with legal limits, and with whether there is a corridor.
     fn without_claims(&self, row: &EdgeRow, unknown: Option<UnknownReason>) -> Outcome {
         let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
-        let Some(edge) = self.network.edges.get(row.edge.index as usize) else {
+        let Some(edge) = self.network.edges.get(row.edge.index.index()) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
         if let Some(Err(why)) = row.certificate.shrink.map(|shrink| rules::shrink(self.vehicle, shrink)) {
@@ -201,7 +201,7 @@ impl SetClaim<'_> {
     /// Checks the corridor over a span against the map: its width against the strip, its distance from the line against the
     /// tolerance.
     fn road(&self, made: &StrokeCorridor, span: &EdgeSpan) -> Option<Finding> {
-        let edge = self.network.edges.get(span.edge as usize)?;
+        let edge = self.network.edges.get(span.edge.index())?;
         let section = self.network.section(edge);
         let strip = section.strip(self.policy)?;
         if span.centreline_deviation_m > self.params.tolerance_m {
@@ -236,7 +236,7 @@ impl SetClaim<'_> {
 }
 
 fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
-    RowOutcome { index: row.edge.index, id: row.edge.id, verdict: row.certificate.verdict, outcome }
+    RowOutcome { index: row.edge.index.get(), id: row.edge.id, verdict: row.certificate.verdict, outcome }
 }
 
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {

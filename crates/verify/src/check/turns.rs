@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::database::{RowOutcome, SetReport};
 use super::{row_claim, rules};
-use crate::network::Network;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
 use crate::stop::{Stop, Stopped};
@@ -41,7 +41,7 @@ pub struct TurnsClaim<'a> {
     /// All turns of the network, in order.
     pub facts: &'a [TurnFacts],
     /// The database's verdicts for the vehicle, by edge.
-    pub edges: &'a BTreeMap<u32, Verdict>,
+    pub edges: &'a BTreeMap<EdgeNo, Verdict>,
     /// The rows to check, by turn.
     pub rows: &'a BTreeMap<u32, TurnRow>,
     /// The plans that are not the centreline, by turn.
@@ -78,7 +78,7 @@ impl TurnsClaim<'_> {
     }
 
     /// The lines of the strokes at the ends of these turns. One that takes too long is not made.
-    fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
+    fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<EdgeNo, u32>) -> Lines {
         let claims = batch.iter().filter(|row| !row_claim::claims_nothing(&row.certificate));
         let open =
             claims.filter_map(|row| self.facts.get(row.turn.index as usize)).filter(|t| self.barred(t).is_none());
@@ -124,7 +124,7 @@ impl TurnsClaim<'_> {
         }
     }
 
-    fn of(&self, edge: u32) -> Verdict {
+    fn of(&self, edge: EdgeNo) -> Verdict {
         self.edges.get(&edge).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry))
     }
 
@@ -135,14 +135,20 @@ impl TurnsClaim<'_> {
     /// What stands against driving over each edge that a passage leads over, room aside.
     fn passed(&self, turn: &TurnFacts) -> impl Iterator<Item = Verdict> {
         turn.through.iter().map(|&arc| {
-            let (known, edge) = (self.of(arc), self.network.edges.get(arc as usize));
+            let (known, edge) = (self.of(arc), self.network.edges.get(arc.index()));
             let legal = || edge.and_then(|edge| self.network.legal(edge).forbids(self.vehicle));
             if known.bars_passage() { known } else { legal().unwrap_or(known) }
         })
     }
 
     /// The outcome of a row, which is not confirmed if that takes too long, and the kilometres that were swept for it.
-    fn in_time(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
+    fn in_time(
+        &self,
+        chain: &Chain,
+        row: &TurnRow,
+        stroke_of: &FxHashMap<EdgeNo, u32>,
+        lines: &Lines,
+    ) -> (Outcome, f64) {
         let (number, of) = (u64::from(row.turn.index) + 1, self.facts.len() as u64);
         let work = Work { what: "turn", number, of, edge: Some(row.turn.from_edge) };
         let checked = watch::guarded(work, watch::patience(), || self.row(chain, row, stroke_of, lines));
@@ -150,7 +156,7 @@ impl TurnsClaim<'_> {
     }
 
     /// The outcome of a row, and the kilometres that were swept for it.
-    fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
+    fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<EdgeNo, u32>, lines: &Lines) -> (Outcome, f64) {
         let Some(turn) = self.facts.get(row.turn.index as usize) else {
             return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
         };
@@ -179,7 +185,7 @@ impl TurnsClaim<'_> {
 
     /// The first column whose fact about the turn differs from the network, if there is one.
     fn misdescribed(&self, turn: &TurnFacts, row: &TurnRow) -> Option<String> {
-        let id = |edge: u32| self.network.edges.get(edge as usize).map_or(0, |edge| edge.id);
+        let id = |edge: EdgeNo| self.network.edges.get(edge.index()).map_or(0, |edge| edge.id);
         let arcs = turn.through.first().zip(turn.through.last()).map(|(&first, &last)| [id(first), id(last)]);
         let same = [
             ("turn_id", row.turn.id == turn.id),
@@ -196,11 +202,11 @@ impl TurnsClaim<'_> {
     fn made(
         &self,
         turn: &TurnFacts,
-        stroke_of: &FxHashMap<u32, u32>,
+        stroke_of: &FxHashMap<EdgeNo, u32>,
         lines: &Lines,
     ) -> Result<TurnCorridors, UnknownReason> {
         let reach = LengthClass::of(self.vehicle).ok_or(UnknownReason::Geometry)?;
-        let line = |edge: u32| match stroke_of.get(&edge).and_then(|stroke| lines.get(stroke)) {
+        let line = |edge: EdgeNo| match stroke_of.get(&edge).and_then(|stroke| lines.get(stroke)) {
             Some(Ok(line)) => Ok(line),
             Some(Err(reason)) => Err(*reason),
             None => Err(UnknownReason::Geometry),

@@ -14,6 +14,7 @@ use super::relations::{Kind, Member, Refused, refusal_word, refused, set_members
 use super::split::Cuts;
 use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
+use crate::rows::EdgeNo;
 use crate::scratch::Scratch;
 use crate::ways::ids;
 use crate::{Destination, ExportError, Sink, Source};
@@ -39,11 +40,11 @@ pub(super) struct Refusals<'s, 'r> {
     source: &'s Source<'r>,
     flavour: Flavour,
     cuts: Cuts,
-    sequences: Vec<Vec<u32>>,
+    sequences: Vec<Vec<EdgeNo>>,
     /// The ends of the edges that relations will name.
-    ends: FxHashMap<u32, Ends>,
+    ends: FxHashMap<EdgeNo, Ends>,
     /// The nodes between the ends of each edge in the middle of a sequence.
-    between: FxHashMap<u32, Vec<i64>>,
+    between: FxHashMap<EdgeNo, Vec<i64>>,
     /// The ends at which turning back is refused. They are in a file, because there are as many as edges.
     dead_ends: Scratch,
     /// What the extract refuses already, by key.
@@ -59,7 +60,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         destination: &Destination,
     ) -> Result<Self, ExportError> {
         let sequences = source.sequences()?;
-        let middle = |edges: &Vec<u32>| edges.get(1..edges.len() - 1).unwrap_or_default().to_vec();
+        let middle = |edges: &Vec<EdgeNo>| edges.get(1..edges.len() - 1).unwrap_or_default().to_vec();
         let between = sequences.iter().flat_map(middle).map(|edge| (edge, Vec::new())).collect();
         Ok(Self {
             source,
@@ -81,7 +82,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
     }
 
     /// Notes the ends and nodes of an edge, if a relation will name it.
-    pub(super) fn lies(&mut self, edge: u32, ends: Ends, nodes: &[i64]) {
+    pub(super) fn lies(&mut self, edge: EdgeNo, ends: Ends, nodes: &[i64]) {
         if self.cuts.speaks_of(edge) {
             self.ends.insert(edge, ends);
         }
@@ -178,14 +179,15 @@ impl<'s, 'r> Refusals<'s, 'r> {
 
     /// Shortens sequences that are too long for Valhalla, by refusing them earlier.
     fn shorten(&mut self) -> Result<(), ExportError> {
-        let most = |edges: &Vec<u32>| edges.iter().filter_map(|edge| self.between.get(edge)).map(|n| n.len() + 1).sum();
+        let most =
+            |edges: &Vec<EdgeNo>| edges.iter().filter_map(|edge| self.between.get(edge)).map(|n| n.len() + 1).sum();
         if self.sequences.iter().map(most).all(|segments: usize| segments <= MOST_VIA_SEGMENTS) {
             return Ok(());
         }
         let shared = self.shared_nodes()?;
         for edges in &mut self.sequences {
             let mut segments = 0;
-            let fits = |edge: &&u32| {
+            let fits = |edge: &&EdgeNo| {
                 let inner = self.between.get(edge).map_or(&[][..], Vec::as_slice);
                 segments += 1 + inner.iter().filter(|node| shared.contains(node)).count();
                 segments <= MOST_VIA_SEGMENTS
@@ -212,7 +214,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         Ok(passed.into_iter().filter(|&(_, times)| times > 1).map(|(node, _)| node).collect())
     }
 
-    fn sequence(&mut self, edges: &[u32]) -> Result<(), ExportError> {
+    fn sequence(&mut self, edges: &[EdgeNo]) -> Result<(), ExportError> {
         let Some(on) = edges.iter().map(|edge| self.ends.get(edge).copied()).collect::<Option<Vec<Ends>>>() else {
             return Ok(());
         };
@@ -248,21 +250,21 @@ fn over(from: i64, via: i64, to: i64) -> [Member; 3] {
 }
 
 /// The places at which ways must end so that relations can name edges.
-fn cuts(source: &Source<'_>, sequences: &[Vec<u32>]) -> Result<Cuts, ExportError> {
+fn cuts(source: &Source<'_>, sequences: &[Vec<EdgeNo>]) -> Result<Cuts, ExportError> {
     let mut cuts = Cuts::none(source.permitted.edges.len());
     let mut database = source.database()?;
     let [first, last] = &mut cuts.at;
     for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
         let step = step?;
         if source.refuses_turn(&step) {
-            last.set(step.from);
-            first.set(step.to);
+            last.set(step.from.index());
+            first.set(step.to.index());
         }
     }
     for pair in sequences.iter().flat_map(|edges| edges.array_windows()) {
         let [from, to] = pair;
-        last.set(*from);
-        first.set(*to);
+        last.set(from.index());
+        first.set(to.index());
     }
     Ok(cuts)
 }

@@ -241,7 +241,7 @@ impl Rewriter<'_, '_> {
                     self.refusals.lies(edge, ends, refs.get(stretch.first..=stretch.last).unwrap_or_default());
                 }
             }
-            if stretch.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge))) {
+            if stretch.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge.index()))) {
                 self.refusals.dead_end(first)?;
                 self.refusals.dead_end(last)?;
             }

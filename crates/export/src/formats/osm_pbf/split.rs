@@ -2,6 +2,7 @@
 
 use super::tags::Said;
 use crate::permit::{Bits, Permitted};
+use crate::rows::EdgeNo;
 use crate::ways::WayStretch;
 
 /// A part of a way as it is written: a range of the way's references.
@@ -25,15 +26,15 @@ impl Cuts {
     }
 
     /// Whether a relation will name the edge.
-    pub(super) fn speaks_of(&self, edge: u32) -> bool {
-        self.at.iter().any(|bits| bits.get(edge))
+    pub(super) fn speaks_of(&self, edge: EdgeNo) -> bool {
+        self.at.iter().any(|bits| bits.get(edge.index()))
     }
 
     /// Whether a way must end at a stretch's first node, and at its last. If both directions are permitted, turning back is refused at
     /// both ends, so the way must end at both.
     fn of(&self, stretch: &WayStretch, permitted: [bool; 2]) -> [bool; 2] {
-        let cut = |edge: Option<u32>, end: usize| {
-            edge.is_some_and(|edge| self.at.get(end).is_some_and(|bits| bits.get(edge)))
+        let cut = |edge: Option<EdgeNo>, end: usize| {
+            edge.is_some_and(|edge| self.at.get(end).is_some_and(|bits| bits.get(edge.index())))
         };
         let [along, against] = stretch.edges;
         [0, 1].map(|end| permitted == [true; 2] || cut(along, end) || cut(against, 1 - end))
@@ -71,7 +72,7 @@ pub(super) fn parts(
     for stretch in stretches {
         // Between stretches the extract lacks nodes, so nothing is permitted there.
         add(WayPart { first: done, last: stretch.first, said: Said::default() }, [false; 2]);
-        let yes = stretch.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge)));
+        let yes = stretch.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge.index())));
         let said = Said { permitted: yes, rsc_m: stretch.rsc_m };
         let on_stretch = refs.get(stretch.first..=stretch.last).unwrap_or_default();
         let cut = if limited(on_stretch) { [true; 2] } else { cuts.of(stretch, yes) };
@@ -102,10 +103,16 @@ mod tests {
     const LIMITED: i64 = 77;
 
     fn stretch(first: usize, last: usize, edges: [Option<u32>; 2]) -> WayStretch {
+        let edges = edges.map(|edge| edge.map(EdgeNo::new));
         WayStretch { first, last, edges, rsc_m: [Some(0.5); 2] }
     }
 
-    fn spans(stretches: &[WayStretch], refs: &[i64], permitted: &[u32], cuts: &Cuts) -> Vec<(usize, usize, [bool; 2])> {
+    fn spans(
+        stretches: &[WayStretch],
+        refs: &[i64],
+        permitted: &[usize],
+        cuts: &Cuts,
+    ) -> Vec<(usize, usize, [bool; 2])> {
         let mut bits = Bits::unset(10);
         permitted.iter().for_each(|&edge| bits.set(edge));
         let permitted = Permitted { edges: bits, ..Permitted::default() };

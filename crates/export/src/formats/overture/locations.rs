@@ -4,6 +4,7 @@
 use std::io::Write as _;
 
 use crate::osm::facts::Direction;
+use crate::rows::EdgeNo;
 use crate::rows::{EdgeKey, EdgeStep};
 use crate::scratch::Scratch;
 use crate::{ExportError, Source};
@@ -42,7 +43,7 @@ impl EdgeLocations {
     }
 
     /// The location of an edge of the network.
-    pub(super) fn get(&mut self, edge: u32) -> Result<EdgeLocation, ExportError> {
+    pub(super) fn get(&mut self, edge: EdgeNo) -> Result<EdgeLocation, ExportError> {
         let mut bytes = [0; LOCATION_BYTES];
         self.file.read_at(u64::from(edge) * LOCATION_BYTES as u64, &mut bytes)?;
         Ok(EdgeLocation::of(&bytes))
@@ -107,7 +108,7 @@ mod tests {
 
     fn facts(way_id: i64, shape_start: u32, positions: u32, direction: Direction) -> EdgeStep {
         let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
-        let edge = EdgeKey { index: 0, id: 0, way_id, from_node: 1, to_node: -2, direction };
+        let edge = EdgeKey { index: EdgeNo::new(0), id: 0, way_id, from_node: 1, to_node: -2, direction };
         EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }
     }
 

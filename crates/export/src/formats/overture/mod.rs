@@ -20,6 +20,7 @@ use serde_json::json;
 
 use super::{Options, Target};
 use crate::osm::LonLat;
+use crate::rows::EdgeNo;
 use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use crate::{Destination, ExportError, Layout, Sink, Source};
@@ -109,9 +110,9 @@ fn write_connectors(
 /// The transitions that are prohibited, by the first edge.
 struct Transitions {
     /// The edges of refused turns: from and to, both permitted.
-    turns: std::iter::Peekable<Sorted<(u32, u32), ()>>,
+    turns: std::iter::Peekable<Sorted<(EdgeNo, EdgeNo), ()>>,
     /// The sequences of [`Source::sequences`], by their first edge. They are few.
-    sequences: BTreeMap<u32, Vec<Vec<u32>>>,
+    sequences: BTreeMap<EdgeNo, Vec<Vec<EdgeNo>>>,
 }
 
 impl Transitions {
@@ -124,7 +125,7 @@ impl Transitions {
                 turns.push((step.from, step.to), &())?;
             }
         }
-        let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        let mut sequences: BTreeMap<EdgeNo, Vec<Vec<EdgeNo>>> = BTreeMap::new();
         for mut sequence in source.sequences()? {
             let first = sequence.remove(0);
             sequences.entry(first).or_default().push(sequence);
@@ -133,10 +134,11 @@ impl Transitions {
     }
 
     /// The prohibited sequences after an edge, each without that edge. Edges must come in order.
-    fn of(&mut self, edge: u32) -> Result<Vec<Vec<u32>>, ExportError> {
+    fn of(&mut self, edge: EdgeNo) -> Result<Vec<Vec<EdgeNo>>, ExportError> {
         let mut out = Vec::new();
-        let reached =
-            |next: &std::io::Result<((u32, u32), ())>| next.as_ref().map_or(true, |((from, _), ())| *from <= edge);
+        let reached = |next: &std::io::Result<((EdgeNo, EdgeNo), ())>| {
+            next.as_ref().map_or(true, |((from, _), ())| *from <= edge)
+        };
         while let Some(row) = self.turns.next_if(reached) {
             let ((from, to), ()) = row?;
             if from == edge {
@@ -188,7 +190,7 @@ impl Writer<'_, '_> {
     }
 
     /// The prohibited sequences after a permitted edge that ends at the node `end`.
-    fn forbidden(&mut self, edge: u32, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
+    fn forbidden(&mut self, edge: EdgeNo, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
         let mut out = Vec::new();
         for sequence in self.transitions.of(edge)? {
             let mut via = end;
