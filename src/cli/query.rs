@@ -168,7 +168,7 @@ impl Query {
             TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle.id, policy) };
         let mut rows = Vec::new();
         for row in database.query_turns(&options)? {
-            let relative = relative::beside(&mut beside, row.turn.index, &row.certificate)?;
+            let relative = relative::beside(&mut beside, row.turn.index.get(), &row.certificate)?;
             if self.shows(relative) {
                 rows.push((row, relative));
             }

@@ -227,7 +227,7 @@ fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Ow
     }
     let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings: &settings };
     certify_turns(&job, &Silent, |_, made: &TurnCertificate| {
-        let turn = &turns[made.turn as usize];
+        let turn = &turns[made.turn.index()];
         if of_turn(turn) {
             let plan = made.plan.as_ref().map(|plan| format!("{plan:?}").split_once("packed").unwrap().1.to_owned());
             owned.turn_certificates.insert(turn.id, format!("{:?} {:?} {plan:?}", made.conclusion, made.path));

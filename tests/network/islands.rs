@@ -9,7 +9,7 @@ use netcert::osm::facts::{AreaKind, Policy, RoadClass, TrafficSide};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::store::{Database, Run};
-use netcert::turns::{LengthClass, TurnCorridors};
+use netcert::turns::{LengthClass, TurnCorridors, TurnNo};
 use netcert::verdict::{UnsafeReason, Verdict};
 
 use netcert_testing::ascii_map::{AsciiMap, built, no_sections, somewhere};
@@ -52,7 +52,7 @@ fn rsc_m(drawn: &Drawn) -> Option<f64> {
 fn verdicts(drawn: &Drawn) -> Vec<Verdict> {
     let edges = vec![Verdict::Safe; drawn.network.edges.len()];
     let (rows, _) = drawn.certified(&[LORRY], &edges, Policy::Carriageway, 1);
-    let by_turn: BTreeMap<u32, TurnCertificate> = rows.into_iter().map(|(_, row)| (row.turn, row)).collect();
+    let by_turn: BTreeMap<TurnNo, TurnCertificate> = rows.into_iter().map(|(_, row)| (row.turn, row)).collect();
     by_turn.into_values().map(|row| row.conclusion.verdict).collect()
 }
 

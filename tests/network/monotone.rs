@@ -43,7 +43,7 @@ fn turns(drawn: &Drawn, vehicle: &str, policy: Policy, widths_m: [f64; 2]) -> Ve
     let mut found = vec![None; turns.len()];
     certify_turns(&job, &Silent, |_, made| {
         let safe = made.conclusion.verdict == Verdict::Safe;
-        found[made.turn as usize] = made.conclusion.measured.filter(|_| safe).map(|measured| measured.rsc_m);
+        found[made.turn.index()] = made.conclusion.measured.filter(|_| safe).map(|measured| measured.rsc_m);
         Ok::<(), ()>(())
     })
     .unwrap();

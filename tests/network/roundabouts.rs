@@ -203,7 +203,7 @@ fn a_passage_has_one_certificate_whatever_the_threads() {
     assert_eq!(one, certified(&drawn, "EU-SEMI16.5", &safe, 3));
     let turns = drawn.facts();
     let id = drawn.passage("WE").id;
-    let over: Vec<_> = one.iter().filter(|c| turns[c.turn as usize].id == id).collect();
+    let over: Vec<_> = one.iter().filter(|c| turns[c.turn.index()].id == id).collect();
     assert_eq!(over.len(), 1);
     assert_eq!(over[0].conclusion.verdict, Verdict::Safe);
     assert!(over[0].conclusion.measured.is_some() && over[0].path.is_some());
@@ -218,7 +218,7 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
         edges[over.through[1].index()] = verdict;
         let all = certified(&drawn, "AGV-TUG4", &edges, 2);
-        [&over, &past].map(|t| all.iter().find(|c| turns[c.turn as usize].id == t.id).unwrap().conclusion.verdict)
+        [&over, &past].map(|t| all.iter().find(|c| turns[c.turn.index()].id == t.id).unwrap().conclusion.verdict)
     };
     assert_eq!(of(Verdict::Unsafe(UnsafeReason::Width)), [Verdict::Safe; 2], "nobody goes round for ever");
     let barred = Verdict::Forbidden(ForbiddenReason::Hgv);
@@ -238,7 +238,7 @@ fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
         over.through.iter().for_each(|&arc| edges[arc.index()] = on_the_ring);
         let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
-        let verdict = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap().conclusion.verdict;
+        let verdict = all.iter().find(|c| turns[c.turn.index()].id == over.id).unwrap().conclusion.verdict;
         assert_eq!(verdict, expected, "arcs {on_the_ring:?}");
     }
     let settings = Settings { policy: Policy::Carriageway, kerbs: drawn.params.kerbs.clone(), ..Settings::default() };
@@ -259,7 +259,7 @@ fn a_passage_over_an_arc_that_is_closed_at_night_is_certified_for_the_day() {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
         over.through.iter().for_each(|&arc| edges[arc.index()] = on_the_ring);
         let all = certified(&drawn, "EU-SEMI16.5", &edges, 2);
-        let made = all.iter().find(|c| turns[c.turn as usize].id == over.id).unwrap();
+        let made = all.iter().find(|c| turns[c.turn.index()].id == over.id).unwrap();
         assert_eq!(made.conclusion.verdict, time, "arcs {on_the_ring:?}");
         assert!(made.conclusion.measured.is_some_and(|measured| measured.rsc_m >= 0.0));
     }
@@ -283,7 +283,7 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
     let turns = drawn.facts();
     let all = certified(&drawn, "AGV-TUG4", &safe, 1);
     let id = drawn.passage("SE").id;
-    let verdict = all.iter().find(|c| turns[c.turn as usize].id == id).unwrap().conclusion.verdict;
+    let verdict = all.iter().find(|c| turns[c.turn.index()].id == id).unwrap().conclusion.verdict;
     assert_eq!(verdict, Verdict::Forbidden(ForbiddenReason::Restriction));
 }
 

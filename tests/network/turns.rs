@@ -287,7 +287,7 @@ fn a_restriction_forbids_whatever_fits() {
     let turns = drawn.facts();
     let of = |nodes: &str| {
         let id = drawn.turn(nodes).id;
-        certificates.iter().find(|(_, c)| turns[c.turn as usize].id == id).unwrap().1.conclusion.verdict
+        certificates.iter().find(|(_, c)| turns[c.turn.index()].id == id).unwrap().1.conclusion.verdict
     };
     assert_eq!(of("EBC"), Verdict::Forbidden(ForbiddenReason::Restriction));
     assert_eq!(of("EBA"), Verdict::Safe);

@@ -13,7 +13,7 @@ use netcert::rows::EdgeRow;
 use netcert::rows::{Bounds, EdgeCertificate, EdgeMeasure, TurnCertificate};
 use netcert::settings::Settings;
 use netcert::store::{Area, Database, QueryOptions, Run, StoreError, TurnSet, VehicleRecord, Writer};
-use netcert::turns::{Kerbs, turn_facts};
+use netcert::turns::{Kerbs, TurnNo, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 use netcert::words::{VerdictKind, verdict_words};
 
@@ -543,7 +543,7 @@ fn child_that_is_killed() {
         };
         loop {
             let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
-            let certificates = (0..facts.len() as u32).map(unknown).collect();
+            let certificates = TurnNo::first(facts.len()).map(unknown).collect();
             let turns = Some(TurnSet { network: &network, facts: &facts, junctions: &[], certificates });
             database
                 .replace_certificates(

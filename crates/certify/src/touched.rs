@@ -9,7 +9,7 @@ use rustc_hash::FxHashSet;
 
 use crate::network::{EARTH_RADIUS_M, EdgeNo, Network};
 use crate::osm::LonLat;
-use netcert_roads::turns::TurnFacts;
+use netcert_roads::turns::{TurnFacts, TurnNo};
 
 /// Roads and kerbs at nodes farther from a turn's line than this are no part of its area, metres. Its area has crossings up to 30 m along
 /// its roads.
@@ -20,8 +20,8 @@ const NEAR_M: f64 = 150.0;
 pub struct Touched {
     /// Indices into [`Network::strokes`], sorted.
     pub strokes: Vec<u32>,
-    /// Indices of turns, sorted.
-    pub turns: Vec<u32>,
+    /// Turns, sorted.
+    pub turns: Vec<TurnNo>,
     /// Nodes at which a road's width, a kerb or a surface differs, sorted.
     pub nodes: Vec<i64>,
 }
@@ -44,7 +44,7 @@ impl Touched {
             places.extend([edge.from_node, edge.to_node]);
         }
         let touched = TouchedTurns::new(network, &strokes, &places);
-        let turns = (0..).zip(turns).filter(|(_, turn)| touched.has(turn)).map(|(index, _)| index).collect();
+        let turns = TurnNo::all().zip(turns).filter(|(_, turn)| touched.has(turn)).map(|(index, _)| index).collect();
         let mut nodes: Vec<i64> = places.into_iter().collect();
         nodes.sort_unstable();
         Self { strokes, turns, nodes }

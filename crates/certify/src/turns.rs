@@ -22,7 +22,7 @@ use crate::stet::{Model, SpanResult};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
-use netcert_roads::turns::{LengthClass, Planned, StrokeLine, TurnFacts, turn_on};
+use netcert_roads::turns::{LengthClass, Planned, StrokeLine, TurnFacts, TurnNo, turn_on};
 
 /// Turns per batch.
 const BATCH: usize = 512;
@@ -111,17 +111,17 @@ pub fn certify_turns<E: Send>(
     reporter: &dyn Reporter,
     sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
-    let all: Vec<u32> = (0..).take(job.turns.len()).collect();
+    let all: Vec<TurnNo> = TurnNo::first(job.turns.len()).collect();
     certify_some_turns(job, &all, reporter, sink)
 }
 
-/// Certifies some turns, given as indices into [`TurnJob::turns`], as [`certify_turns`] does.
+/// Certifies some turns of [`TurnJob::turns`], as [`certify_turns`] does.
 ///
 /// # Errors
 /// The first error of `sink`.
 pub fn certify_some_turns<E: Send>(
     job: &TurnJob<'_>,
-    turns: &[u32],
+    turns: &[TurnNo],
     reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
@@ -137,7 +137,7 @@ pub fn certify_some_turns<E: Send>(
 /// The first error of `keep` or `sink`.
 pub fn make_turns<E: Send>(
     job: &TurnJob<'_>,
-    turns: &[u32],
+    turns: &[TurnNo],
     reporter: &dyn Reporter,
     keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
     mut sink: impl FnMut(TurnMade) -> Result<(), E>,
@@ -151,7 +151,7 @@ pub fn make_turns<E: Send>(
         lay_lines(job, batch, &strokes, &mut lines, number);
         let measured_m = |made: &TurnMade| {
             let lacks = made.laid_out && made.certificates.iter().any(lacks_room);
-            measured.as_ref().filter(|_| lacks)?.most_m(job.network, &strokes, &job.turns[made.turn as usize])
+            measured.as_ref().filter(|_| lacks)?.most_m(job.network, &strokes, &job.turns[made.turn.index()])
         };
         let made = batch.par_iter().map(|&turn| {
             let made = in_time(job, turn, &strokes, &lines);
@@ -170,8 +170,8 @@ pub fn make_turns<E: Send>(
     Ok(())
 }
 
-/// Indices of the turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
-fn neighbours(turns: &[TurnFacts], which: &[u32]) -> Vec<u32> {
+/// The turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
+fn neighbours(turns: &[TurnFacts], which: &[TurnNo]) -> Vec<TurnNo> {
     let place =
         |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
     let spread = |e7: i32| {
@@ -183,16 +183,16 @@ fn neighbours(turns: &[TurnFacts], which: &[u32]) -> Vec<u32> {
         (x | x << 1) & 0x5555_5555_5555_5555
     };
     let along = |turn: &TurnFacts| spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1;
-    let mut order: Vec<(u64, u32)> = which.iter().filter_map(|&i| Some((along(turns.get(i as usize)?), i))).collect();
+    let mut order: Vec<(u64, TurnNo)> = which.iter().filter_map(|&i| Some((along(turns.get(i.index())?), i))).collect();
     order.sort_unstable();
     order.into_iter().map(|(_, i)| i).collect()
 }
 
 /// Makes the lines that a batch needs and drops those that no batch has needed for a while.
-fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Lines, number: usize) {
+fn lay_lines(job: &TurnJob<'_>, batch: &[TurnNo], strokes: &[u32], lines: &mut Lines, number: usize) {
     let mut wanted: Vec<u32> = batch
         .iter()
-        .map(|&turn| &job.turns[turn as usize])
+        .map(|&turn| &job.turns[turn.index()])
         .filter(|turn| (0..job.models.len()).any(|vehicle| given(job, turn, vehicle).is_none()))
         .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied()))
         .map(|edge| strokes[edge.index()])
@@ -319,7 +319,7 @@ fn plan_as_on(
     strokes: &[u32],
     lines: &Lines,
 ) -> Vec<(usize, TurnCertificate)> {
-    let turn = &job.turns[made.turn as usize];
+    let turn = &job.turns[made.turn.index()];
     let (policy, params) = (job.settings.policy, &job.settings.turn_params());
     let here = |edge: EdgeNo| line_of(lines, strokes, edge);
     let met: FxHashSet<u32> = turn
@@ -376,12 +376,12 @@ fn line_of<'l>(lines: &'l Lines, strokes: &[u32], edge: EdgeNo) -> Result<&'l St
 }
 
 /// The certificates of a turn, which are unknown if they take too long.
-fn in_time(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
-    let edge = job.turns.get(index as usize).map(|turn| job.network.edges[turn.movement.from.index()].id);
+fn in_time(job: &TurnJob<'_>, index: TurnNo, strokes: &[u32], lines: &Lines) -> TurnMade {
+    let edge = job.turns.get(index.index()).map(|turn| job.network.edges[turn.movement.from.index()].id);
     let work = Work { what: "turn", number: u64::from(index) + 1, of: job.turns.len() as u64, edge };
     let certify = || certify_turn(job, index, strokes, lines);
     watch::guarded(work, watch::patience(), certify).unwrap_or_else(|TookTooLong| {
-        let turn = &job.turns[index as usize];
+        let turn = &job.turns[index.index()];
         let verdict = |vehicle| given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::TookTooLong));
         let certificates =
             (0..job.models.len()).map(|vehicle| TurnCertificate::bare(index, verdict(vehicle))).collect();
@@ -391,8 +391,8 @@ fn in_time(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> Tur
 }
 
 /// One certificate per vehicle.
-fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
-    let turn = &job.turns[index as usize];
+fn certify_turn(job: &TurnJob<'_>, index: TurnNo, strokes: &[u32], lines: &Lines) -> TurnMade {
+    let turn = &job.turns[index.index()];
     let bare = |verdict: Verdict| TurnCertificate::bare(index, verdict);
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
@@ -437,7 +437,7 @@ pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
     result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
 }
 
-fn certificate(turn: u32, best: Option<Best>) -> TurnCertificate {
+fn certificate(turn: TurnNo, best: Option<Best>) -> TurnCertificate {
     let verdict = turn_verdict(best.as_ref().map(|best| &best.result));
     let bounded = best.and_then(|best| Some((best.result.rsc_m?, best.result.hinge_margin_rad?, best)));
     match bounded {
@@ -452,7 +452,7 @@ fn certificate(turn: u32, best: Option<Best>) -> TurnCertificate {
                 limiting_unit: result.limiting.unit,
                 limiting_side: result.limiting.side,
             };
-            let plan = StoredPlan::new(turn, &plan.coefficients);
+            let plan = StoredPlan::new(turn.get(), &plan.coefficients);
             let conclusion = Conclusion { verdict, measured: Some(measured) };
             TurnCertificate { turn, conclusion, path: Some(path.code), need: TurnNeed::default(), plan }
         }

@@ -15,7 +15,7 @@ impl Source<'_> {
     /// Whether the step is a turn that is refused although both its edges are permitted.
     pub(super) fn refuses_turn(&self, step: &TurnStep) -> bool {
         let open = self.permitted.edges.get(step.from.index()) && self.permitted.edges.get(step.to.index());
-        step.arcs.is_none() && open && !self.permitted.turns.get(step.turn as usize)
+        step.arcs.is_none() && open && !self.permitted.turns.get(step.turn.index())
     }
 
     /// The sequences of two or more permitted edges that may not be driven one right after the other, sorted. A sequence that
@@ -30,7 +30,7 @@ impl Source<'_> {
         let mut sequences = database.forbidden_sequences()?;
         for step in self.told(database.turn_steps(vehicle, policy)?) {
             let step = step?;
-            let refused = step.arcs.filter(|_| !self.permitted.turns.get(step.turn as usize));
+            let refused = step.arcs.filter(|_| !self.permitted.turns.get(step.turn.index()));
             if let Some(arcs) = refused.and_then(|arcs| rings.through(arcs)) {
                 sequences.push([&[step.from], &arcs[..], &[step.to]].concat());
             }

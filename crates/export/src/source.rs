@@ -100,7 +100,7 @@ impl<'r> Source<'r> {
         let with_permit = |row: TurnRow| {
             let permit = Permit::of(&row.certificate);
             // The bit says whether the turn is permitted with its edges. If not, the rule finds the reason: the turn's or an edge's.
-            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn.index as usize));
+            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn.index.index()));
             ExportTurn { row, refusal }
         };
         self.reporter.begin("turns", self.permitted.turns.len() as u64);

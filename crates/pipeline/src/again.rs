@@ -142,7 +142,7 @@ impl Again<'_> {
             set.edges = verdicts;
             let mut turn_changes = VerdictChanges::default();
             if let Some(known) = &mut set.turns {
-                turns.iter().for_each(|made| turn_changes.replace(known, made.turn as usize, made.conclusion.verdict));
+                turns.iter().for_each(|made| turn_changes.replace(known, made.turn.index(), made.conclusion.verdict));
             }
             let (vehicle, policy) = (set.model.vehicle.id.clone(), settings.policy);
             again.push(MadeAgain {

@@ -12,7 +12,7 @@ use crate::reporter::Reporter;
 use crate::rows::EdgeMeasure;
 use crate::settings::Settings;
 use crate::store::Amendment;
-use crate::turns::{TurnFacts, junction_areas, junction_places};
+use crate::turns::{TurnFacts, TurnNo, junction_areas, junction_places};
 
 /// Most touched strokes and turns that are certified in place, and the same as a share of all: one in twenty. Beyond that, most of the time goes
 /// into certificates, and they are kept if the program is killed.
@@ -46,7 +46,7 @@ pub(super) fn amendment<'a>(
     }
     let differences = Differences::find(&before.network, network);
     let mut touched = Touched::find(network, turns, &differences.edges, &differences.nodes);
-    let others = (0_u32..).zip(turns_before.iter().zip(turns));
+    let others = TurnNo::all().zip(turns_before.iter().zip(turns));
     touched.turns.extend(others.filter(|(_, (old, new))| !same_turn(&differences, old, new)).map(|(index, _)| index));
     let most = MOST_TOUCHED.max((network.strokes.len() + turns.len()) / ONE_IN);
     if touched.strokes.len() + touched.turns.len() > most {
@@ -82,13 +82,14 @@ fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMe
         touched.strokes.extend(
             edges.filter(|((verdict, (_, measure)), _)| is_undone(**verdict, measure)).map(|(_, stroke)| *stroke),
         );
-        let turns = (0_u32..).zip(set.turns.iter().flatten());
+        let turns = TurnNo::all().zip(set.turns.iter().flatten());
         touched.turns.extend(turns.filter(|(_, verdict)| verdict.claims_nothing()).map(|(turn, _)| turn));
     }
-    for touched in [&mut touched.strokes, &mut touched.turns] {
-        touched.sort_unstable();
-        touched.dedup();
-    }
+    let Touched { strokes, turns, .. } = touched;
+    strokes.sort_unstable();
+    strokes.dedup();
+    turns.sort_unstable();
+    turns.dedup();
 }
 
 /// The account of all certificates, those that stand and those that were made again. `measures`: by edge.

@@ -13,7 +13,7 @@ use crate::rows::{EdgeCertificate, StoredPlan, StrokeMade, TurnCertificate, Turn
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{Checkpoint, PartOfWork, Stage, VehicleNo, Writer};
-use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
+use crate::turns::{JunctionArea, TurnFacts, TurnNo, junction_areas, junction_places, turn_facts};
 
 use super::edge_verdicts::EdgeVerdicts;
 use super::error::RunError;
@@ -185,7 +185,7 @@ impl Certifier<'_> {
         drop(junctions);
         let edges = &verdicts.0[..];
         let job = TurnJob { network, turns: &turns, models: self.models, edges, settings: self.settings };
-        let mut left = Left::new((0..).take(turns.len()).collect(), turns.len());
+        let mut left = Left::new(TurnNo::first(turns.len()).collect(), turns.len());
         if let Some(earlier) = self.earlier {
             for (turn, kept) in earlier.turns(network, &turns) {
                 if left.take(turn) {
@@ -205,7 +205,7 @@ impl Certifier<'_> {
         })?;
         let left = left.all();
         if unknown_rest(self.failed, part, left.len())? {
-            let made = |&turn: &u32| failed_turn(turn, self.models.len());
+            let made = |&turn: &TurnNo| failed_turn(turn, self.models.len());
             left.iter().map(made).try_for_each(|made| outcome.add(&made, &mut sink))?;
             return Ok(());
         }
@@ -220,26 +220,26 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What is not finished yet: indices in the order in which they are to be done.
-struct Left {
-    order: Vec<u32>,
+/// What is not finished yet: numbers in the order in which they are to be done.
+struct Left<N> {
+    order: Vec<N>,
     finished: Vec<bool>,
 }
 
-impl Left {
-    /// `order`: what is to be done, as indices below `count`.
-    fn new(order: Vec<u32>, count: usize) -> Self {
+impl<N: Copy + Into<u32>> Left<N> {
+    /// `order`: what is to be done, as numbers below `count`.
+    fn new(order: Vec<N>, count: usize) -> Self {
         let mut finished = vec![true; count];
-        order.iter().for_each(|&index| finished[index as usize] = false);
+        order.iter().for_each(|&number| finished[number.into() as usize] = false);
         Self { order, finished }
     }
 
-    /// Notes that an index is finished. `false` if it was before, or is none.
-    fn take(&mut self, index: u32) -> bool {
-        self.finished.get_mut(index as usize).is_some_and(|finished| !std::mem::replace(finished, true))
+    /// Notes that a number is finished. `false` if it was before, or is none.
+    fn take(&mut self, number: N) -> bool {
+        self.finished.get_mut(number.into() as usize).is_some_and(|finished| !std::mem::replace(finished, true))
     }
 
-    fn all(self) -> Vec<u32> {
-        self.order.into_iter().filter(|&index| !self.finished[index as usize]).collect()
+    fn all(self) -> Vec<N> {
+        self.order.into_iter().filter(|&number| !self.finished[number.into() as usize]).collect()
     }
 }

@@ -17,7 +17,7 @@ use crate::rows::{EdgeMeasure, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{self, CertifiedSet, Database, StoredPlans};
-use crate::turns::{JunctionArea, TurnFacts, turn_facts};
+use crate::turns::{JunctionArea, TurnFacts, TurnNo, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
 use super::again::StoredSet;
@@ -235,16 +235,17 @@ impl Earlier {
         &'a self,
         network: &Network,
         turns: &'a [TurnFacts],
-    ) -> impl Iterator<Item = (u32, Vec<(&'a store::StoredCertificate, Option<StoredPlan>)>)> {
+    ) -> impl Iterator<Item = (TurnNo, Vec<(&'a store::StoredCertificate, Option<StoredPlan>)>)> {
         let touched = Touched::find(network, turns, &self.differences.edges, &self.differences.nodes);
-        let touched: FxHashSet<u32> = touched.turns.into_iter().collect();
-        let by_id: FxHashMap<i64, u32> = (0_u32..).zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();
-        (0_u32..).zip(turns).filter_map(move |(index, turn)| {
+        let touched: FxHashSet<TurnNo> = touched.turns.into_iter().collect();
+        let by_id: FxHashMap<i64, TurnNo> =
+            TurnNo::all().zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();
+        TurnNo::all().zip(turns).filter_map(move |(index, turn)| {
             let older = *by_id.get(&turn.id)?;
-            let stands = !touched.contains(&index) && self.same_turn(self.facts.get(older as usize)?, turn);
+            let stands = !touched.contains(&index) && self.same_turn(self.facts.get(older.index())?, turn);
             let of = |set: &'a Set| {
-                let plan = set.turn_plans.at(older, index);
-                Some((set.turns.get(older as usize)?, plan))
+                let plan = set.turn_plans.at(older.get(), index.get());
+                Some((set.turns.get(older.index())?, plan))
             };
             let kept = stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten();
             // What was not done is done now.

@@ -7,6 +7,7 @@ use super::error::RunError;
 use crate::network::EdgeNo;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, TurnMade};
 use crate::store::{Checkpoint, PartOfWork, Stage};
+use crate::turns::TurnNo;
 use crate::verdict::{UnknownReason, Verdict};
 
 /// The result of a task, or that it failed.
@@ -92,6 +93,6 @@ pub(super) fn failed_stroke(stroke: u32, edges: &[EdgeNo], vehicles: usize) -> S
 }
 
 /// A turn of a task that failed.
-pub(super) fn failed_turn(turn: u32, vehicles: usize) -> TurnMade {
+pub(super) fn failed_turn(turn: TurnNo, vehicles: usize) -> TurnMade {
     TurnMade { turn, laid_out: false, certificates: vec![TurnCertificate::bare(turn, FAILED); vehicles] }
 }

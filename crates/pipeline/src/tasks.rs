@@ -25,7 +25,7 @@ use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
 use crate::store::Stage;
-use crate::turns::{Kerbs, TurnFacts, turn_facts};
+use crate::turns::{Kerbs, TurnFacts, TurnNo, turn_facts};
 use crate::vehicle::{Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -273,7 +273,7 @@ impl Job {
             }
         }
         let job = TurnJob { network, turns: &turns, models: &self.models, edges: &edges, settings: &self.settings };
-        let all: Vec<u32> = (0..).take(turns.len()).collect();
+        let all: Vec<TurnNo> = TurnNo::first(turns.len()).collect();
         let mut done: Vec<TurnMade> = Vec::with_capacity(turns.len());
         make_turns(&job, &all, &Silent, &|_| Ok::<_, TaskError>(stop.check()?), |made| {
             done.push(made);

@@ -7,4 +7,5 @@ use netcert_osm::{account, osm};
 
 pub mod corridor;
 pub mod network;
+mod number;
 pub mod turns;

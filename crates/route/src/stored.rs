@@ -93,7 +93,7 @@ impl Standings {
         }
         for step in database.turn_steps(vehicle, policy)? {
             let step = step?;
-            let standing = turns.get(step.turn as usize).copied();
+            let standing = turns.get(step.turn.index()).copied();
             out.turns.extend(standing.map(|standing| ((step.from, step.to), standing)));
         }
         Ok(out)

@@ -6,6 +6,7 @@ use crate::osm::StringId;
 use crate::osm::facts::{Direction, highway};
 use crate::words::Named as _;
 use netcert_roads::network::{EdgeNo, Network, Road};
+use netcert_roads::turns::TurnNo;
 
 /// Which edge is meant: its ids, and its place on its way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,8 +80,8 @@ impl From<RoadName> for RoadName<Cow<'_, str>> {
 /// Which turn is meant: its ids, and the roads that it joins.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TurnKey {
-    /// Index into the network's turns.
-    pub index: u32,
+    /// Its place among the network's turns.
+    pub index: TurnNo,
     /// The stable id, `turn_id`.
     pub id: i64,
     /// The `edge_id` of the edge before the turn.

@@ -36,6 +36,7 @@ pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, T
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;
 pub use netcert_roads::network::EdgeNo;
+pub use netcert_roads::turns::TurnNo;
 pub use plan::StoredPlan;
 pub use plan::unpack;
 pub use relative::{Relative, Standing};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::verdict::{UnknownReason, Verdict};
 use netcert_base::corridor::Side;
 use netcert_roads::network::EdgeNo;
+use netcert_roads::turns::TurnNo;
 
 use super::plan::StoredPlan;
 
@@ -66,8 +67,8 @@ pub struct Measured {
 /// The certificate of one turn, for a vehicle and policy that the caller knows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurnCertificate {
-    /// Index into the network's turns ([`crate::turns::turn_facts`]).
-    pub turn: u32,
+    /// The turn.
+    pub turn: TurnNo,
     /// The verdict and the numbers.
     pub conclusion: Conclusion,
     /// Code of the path that was certified.
@@ -81,7 +82,7 @@ pub struct TurnCertificate {
 impl TurnCertificate {
     /// A certificate without numbers.
     #[must_use]
-    pub fn bare(turn: u32, verdict: Verdict) -> Self {
+    pub fn bare(turn: TurnNo, verdict: Verdict) -> Self {
         Self { turn, conclusion: Conclusion::bare(verdict), path: None, need: TurnNeed::default(), plan: None }
     }
 }
@@ -122,8 +123,8 @@ pub struct StrokeMade {
 /// All that certification says of one turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurnMade {
-    /// Index into the network's turns.
-    pub turn: u32,
+    /// The turn.
+    pub turn: TurnNo,
     /// Whether corridors were made for it.
     pub laid_out: bool,
     /// One certificate for every vehicle of the run.

@@ -5,6 +5,7 @@ use crate::osm::facts::Policy;
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 use netcert_roads::network::EdgeNo;
+use netcert_roads::turns::TurnNo;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
@@ -109,8 +110,8 @@ impl TurnRow {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
 pub struct TurnStep {
-    /// Index into the network's turns.
-    pub turn: u32,
+    /// The turn.
+    pub turn: TurnNo,
     /// The edge before the turn.
     pub from: EdgeNo,
     pub to: EdgeNo,

@@ -110,7 +110,7 @@ impl Region {
         let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings: &settings };
         let mut found = HashMap::new();
         certify_turns(&job, &Silent, |_, certificate| {
-            let Movement { from, to, .. } = turns[certificate.turn as usize].movement;
+            let Movement { from, to, .. } = turns[certificate.turn.index()].movement;
             let rsc_m = certificate.conclusion.measured.map(|measured| measured.rsc_m);
             found.insert((from, to), Permit { verdict: certificate.conclusion.verdict, rsc_m });
             Ok::<(), ()>(())

@@ -27,7 +27,7 @@ use crate::rows::{Bounds, EdgeRow, TurnRow};
 use crate::settings::Settings;
 use crate::stop::Stop;
 use crate::store::{Area, CertifiedSet, Database, QueryOptions, TurnQuery};
-use crate::turns::{Kerbs, TurnFacts, turn_facts};
+use crate::turns::{Kerbs, TurnFacts, TurnNo, turn_facts};
 use crate::vehicle::Vehicle;
 use crate::verdict::Verdict;
 use crate::words::verdict_words;
@@ -280,7 +280,7 @@ impl Request {
             .collect::<Result<_, _>>()?;
         let query = TurnQuery { area: self.area.map(Area::Bounds), ..TurnQuery::new(&set.vehicle_id, set.policy) };
         let rows = self.sampled(database.query_turns(&query)?, |row| row.turn.id);
-        let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn.index, row)).collect();
+        let rows: BTreeMap<TurnNo, TurnRow> = rows.into_iter().map(|row| (row.turn.index, row)).collect();
         let plans = database.turn_plans(&set.vehicle_id, set.policy)?;
         let claim = TurnsClaim {
             network,

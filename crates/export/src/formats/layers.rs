@@ -76,7 +76,8 @@ impl Layer {
                     let turn = turn?;
                     let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
                     let own = Standing::of(&turn.row.certificate);
-                    let relative = beside.as_mut().map(|other| other.relative(turn.row.turn.index, own)).transpose()?;
+                    let relative =
+                        beside.as_mut().map(|other| other.relative(turn.row.turn.index.get(), own)).transpose()?;
                     let cells = with_relative(&turn_cells(source, &turn, &refusal), relative);
                     put(&Row { id: turn.row.turn.id, cells: &cells, line: &turn.row.line })?;
                 }

@@ -126,7 +126,7 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     }
     for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
         let step = step?;
-        if !permitted.turns.get(step.turn as usize) || banned.contains(&[step.from, step.to]) {
+        if !permitted.turns.get(step.turn.index()) || banned.contains(&[step.from, step.to]) {
             continue;
         }
         match step.arcs.map(|arcs| rings.through(arcs)) {

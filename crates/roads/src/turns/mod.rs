@@ -29,6 +29,7 @@
 //! | `family` | the paths with which the search begins |
 //! | `planner` | the search for the path with the most room for a vehicle |
 //! | `facts` | facts of a turn from the map: id, angle, line |
+//! | `turn_no` | the number of a turn in its network |
 //! | `junction_area` | the area of a junction, for people to look at |
 //!
 //! Surfaces mapped as relations (with holes) and lane markings inside the junction are left out. The vehicle arrives and
@@ -54,6 +55,7 @@ mod planner;
 mod rays;
 mod roundabout;
 mod surface;
+mod turn_no;
 
 use std::ops::Range;
 
@@ -65,6 +67,7 @@ pub use islands::cut_out_of_route;
 pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes, junction_places};
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
+pub use turn_no::TurnNo;
 
 use crate::corridor::{AreaSpan, Corridor, Params};
 use crate::network::{EdgeNo, Movement, Network, PassageKind};

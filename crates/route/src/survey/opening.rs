@@ -18,7 +18,7 @@ use crate::reporter::Silent;
 use crate::roads::Roads;
 use crate::settings::{Needs, Settings};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{TurnFacts, turn_facts};
+use crate::turns::{TurnFacts, TurnNo, turn_facts};
 use crate::verdict::Verdict;
 
 /// How much of the roads before and after a turn is looked at, metres. No vehicle's turn needs more.
@@ -41,7 +41,7 @@ pub(super) struct Opener {
     turns: Vec<TurnFacts>,
     /// By turn, and back.
     items: Vec<Option<Item>>,
-    turn_of: FxHashMap<Item, u32>,
+    turn_of: FxHashMap<Item, TurnNo>,
     /// By edge: the other direction of the same piece of road.
     back_of: Vec<Option<EdgeNo>>,
     stroke_of: Arc<[u32]>,
@@ -80,7 +80,7 @@ impl Opener {
             }
         }
         let items = joints.items_of(roads, &turns);
-        let turn_of = (0..).zip(&items).filter_map(|(turn, item)| Some(((*item)?, turn))).collect();
+        let turn_of = TurnNo::all().zip(&items).filter_map(|(turn, item)| Some(((*item)?, turn))).collect();
         Self {
             back_of: backs(&network),
             items,
@@ -363,7 +363,7 @@ impl Opener {
     fn not_turned(&self, turns: &[Item], supposed: &Suppositions, verdicts: &[Verdict]) -> Vec<Item> {
         let mut network = self.network.clone();
         supposed.apply(&mut network);
-        let numbers: Vec<u32> = turns.iter().filter_map(|item| self.turn_of.get(item).copied()).collect();
+        let numbers: Vec<TurnNo> = turns.iter().filter_map(|item| self.turn_of.get(item).copied()).collect();
         let (models, edges) = (std::slice::from_ref(&self.driver.model), [verdicts.to_vec()]);
         let job = TurnJob { network: &network, turns: &self.turns, models, edges: &edges, settings: &self.settings };
         let mut failed = turns.to_vec();
@@ -394,7 +394,7 @@ impl Opener {
         let job = TurnJob { network: &network, turns: &self.turns, models, edges: &verdicts, settings: &self.settings };
         let Ok(_) = certify_some_turns::<std::convert::Infallible>(&job, &touched.turns, &Silent, |_, made| {
             let rsc_m = made.conclusion.measured.map(|measured| measured.rsc_m);
-            let item = self.items.get(made.turn as usize).copied().flatten();
+            let item = self.items.get(made.turn.index()).copied().flatten();
             let slot = item.and_then(|item| slot(&mut permits, item as usize - joints.edges()));
             if let Some(slot) = slot {
                 *slot = Permit { verdict: made.conclusion.verdict, rsc_m };
@@ -403,7 +403,7 @@ impl Opener {
         });
         let strokes = touched.strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize));
         let on = strokes.flat_map(|s| &network.stroke_edges[s.edges.start as usize..s.edges.end as usize]);
-        let turned = touched.turns.iter().filter_map(|&turn| self.items.get(turn as usize).copied().flatten());
+        let turned = touched.turns.iter().filter_map(|&turn| self.items.get(turn.index()).copied().flatten());
         let touched = on.map(|edge| edge.get()).chain(turned).collect();
         Opened { conditions: self.conditions(&supposed), permits, touched, supposed }
     }

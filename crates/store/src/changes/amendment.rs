@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteConnection;
 
 use crate::network::{EdgeNo, Portion, PortionRestriction};
 use crate::osm::LonLat;
-use netcert_roads::turns::{JunctionArea, TurnFacts};
+use netcert_roads::turns::{JunctionArea, TurnFacts, TurnNo};
 use netcert_rows::{Bounds, EdgeMeasure};
 
 use crate::changes::renewal::{self, PackedRenewal, SetRenewal, Triggers};
@@ -232,7 +232,7 @@ async fn change_turns(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sq
     let record = |portion: &Portion, facts| Record::new(&portion.network, facts, |edge| edge);
     let mut changed = Vec::new();
     let mut around = None;
-    for ((index, now), then) in (0_u32..).zip(*turns).zip(*turns_before) {
+    for ((index, now), then) in TurnNo::all().zip(*turns).zip(*turns_before) {
         let row = record(after, now);
         around = around.into_iter().chain(Bounds::around(now.line.iter().copied())).reduce(Bounds::union);
         if row != record(before, then) {

@@ -99,7 +99,7 @@ pub(crate) fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
     let vehicle = &set.vehicle;
     let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.clone(), detail };
     let edge = |known: &EdgeCertificate| CompactCertificate::edge(known).map_err(|why| unsound(known.edge.get(), why));
-    let turn = |known: &TurnCertificate| CompactCertificate::turn(known).map_err(|why| unsound(known.turn, why));
+    let turn = |known: &TurnCertificate| CompactCertificate::turn(known).map_err(|why| unsound(known.turn.get(), why));
     let mut edges = set.edges.iter().map(edge).collect::<Result<Vec<_>, _>>()?;
     let mut turns = set.turns.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
     edges.sort_unstable_by_key(|row| row.fid);

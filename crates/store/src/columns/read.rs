@@ -10,6 +10,7 @@ use crate::network::EdgeNo;
 use crate::osm::LonLat;
 use crate::verdict::Verdict;
 use crate::words::Named;
+use netcert_roads::turns::TurnNo;
 
 use crate::columns::names::verdict_of;
 use crate::error::content;
@@ -48,6 +49,11 @@ pub(crate) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
 /// The edge that has this `fid`.
 pub(crate) fn edge_of(fid: u32) -> EdgeNo {
     EdgeNo::new(fid.saturating_sub(1))
+}
+
+/// The turn that has this `fid`.
+pub(crate) fn turn_of(fid: u32) -> TurnNo {
+    TurnNo::new(fid.saturating_sub(1))
 }
 
 /// The value of the word in a column.

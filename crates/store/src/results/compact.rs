@@ -49,7 +49,11 @@ impl CompactCertificate {
     /// Packs the certificate of a turn. The error says why it may not be stored.
     pub(crate) fn turn(certificate: &TurnCertificate) -> Result<Self, String> {
         let needs_cm = [certificate.need.kerb_radius_m, certificate.need.flare_m].map(need_cm);
-        Ok(Self { path_no: certificate.path, needs_cm, ..Self::conclusion(&certificate.conclusion, certificate.turn)? })
+        Ok(Self {
+            path_no: certificate.path,
+            needs_cm,
+            ..Self::conclusion(&certificate.conclusion, certificate.turn.get())?
+        })
     }
 
     /// Packs the conclusion of the edge or turn with this index.

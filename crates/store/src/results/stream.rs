@@ -10,7 +10,7 @@ use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
 use crate::columns::names::width_columns;
-use crate::columns::read::{edge_of, verdict, word_or_none};
+use crate::columns::read::{edge_of, turn_of, verdict, word_or_none};
 use crate::database::Database;
 use crate::database::streamed::Streamed;
 use crate::error::{StoreError, content};
@@ -128,7 +128,7 @@ fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
     let index = |column| -> Sql<EdgeNo> { Ok(edge_of(row.try_get(column)?)) };
     let arc = |column| -> Sql<Option<EdgeNo>> { Ok(row.try_get::<Option<u32>, _>(column)?.map(edge_of)) };
     Ok(TurnStep {
-        turn: fid.saturating_sub(1),
+        turn: turn_of(fid),
         from: index(1)?,
         to: index(2)?,
         arcs: arc(3)?.zip(arc(4)?).map(|(first, last)| [first, last]),

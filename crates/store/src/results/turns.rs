@@ -11,7 +11,7 @@ use sqlx::{AssertSqlSafe, Row as _};
 use crate::network::{EdgeNo, Movement, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::words::VerdictKind;
-use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
+use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts, TurnNo};
 use netcert_rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 
 use crate::columns::names::{corridor_no, of_kind};
@@ -58,7 +58,7 @@ pub(crate) struct PackedSet {
 impl TurnSet<'_> {
     /// Packs the set. The error names a turn whose certificate is missing or whose numbers do not support its verdict.
     pub(crate) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
-        let pack = |turn: &TurnCertificate| CompactCertificate::turn(turn).map_err(|why| (turn.turn, why));
+        let pack = |turn: &TurnCertificate| CompactCertificate::turn(turn).map_err(|why| (turn.turn.get(), why));
         let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<CompactCertificate>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         sets::check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;
@@ -115,10 +115,10 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
     }
 }
 
-/// Writes turns into the table `turn` and returns the box around them. Each comes with its index in the order of the whole network.
+/// Writes turns into the table `turn` and returns the box around them. Each comes with its number in the whole network.
 pub(crate) async fn write(
     to: &mut impl Takes,
-    turns: impl Iterator<Item = io::Result<(u32, Record)>>,
+    turns: impl Iterator<Item = io::Result<(TurnNo, Record)>>,
 ) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
@@ -294,7 +294,7 @@ pub(crate) async fn insert_set(
     .await?;
     if layers == 0 {
         let record = |(index, facts)| Ok((index, Record::new(made.network, facts, |edge| edge)));
-        let bounds = write(c, (0..).zip(made.facts).map(record)).await?;
+        let bounds = write(c, TurnNo::all().zip(made.facts).map(record)).await?;
         register(c, bounds, time).await?;
         let around = junctions::insert(c, made.junctions.iter().cloned().map(Ok)).await?;
         junctions::register(c, around, time).await?;

@@ -5,7 +5,7 @@ use sqlx::sqlite::SqliteRow;
 
 use netcert_rows::{EdgeKey, RoadName, TurnKey};
 
-use crate::columns::read::{edge_of, word};
+use crate::columns::read::{edge_of, turn_of, word};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -29,7 +29,7 @@ pub(crate) fn road_name(row: &SqliteRow, at: usize) -> Sql<RoadName> {
 /// A turn from `fid`, `turn_id` and the ids of both edges in columns 0 to 3, and the names of both roads from the column `names` on.
 pub(crate) fn turn_key(row: &SqliteRow, names: usize) -> Sql<TurnKey> {
     Ok(TurnKey {
-        index: row.try_get::<u32, _>(0)?.saturating_sub(1),
+        index: turn_of(row.try_get(0)?),
         id: row.try_get(1)?,
         from_edge: row.try_get(2)?,
         to_edge: row.try_get(3)?,

@@ -27,6 +27,7 @@ use crate::roads::restrictions;
 use crate::roads::segments;
 use crate::writer::placing::put_in_place;
 use crate::writer::{Turns, Writer, unsound};
+use netcert_roads::turns::TurnNo;
 
 impl Writer {
     /// Writes what is left, checks the file, and puts it in place of the old one.
@@ -126,7 +127,7 @@ impl FinishTurns<'_> {
         let rows = turns.rows.sorted().map_err(at)?.enumerate().map(|(index, row)| {
             let (_, (arrival, record)) = row?;
             numbers[arrival as usize] = index as u32;
-            Ok((index as u32, record))
+            Ok((TurnNo::at(index), record))
         });
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
         session.run(async |c| sqlx::query("BEGIN").execute(c).await)?;

@@ -13,7 +13,7 @@ use crate::account::AccountRow;
 use crate::network::{Area, EdgeNo, Portion};
 use crate::osm::Backdrop;
 use crate::osm::facts::Policy;
-use netcert_roads::turns::{JunctionArea, TurnFacts};
+use netcert_roads::turns::{JunctionArea, TurnFacts, TurnNo};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCertificate};
 
 use crate::columns::set_no::SetNo;
@@ -186,13 +186,13 @@ impl Writer {
         portion: &Portion,
         facts: &[TurnFacts],
         junctions: &[JunctionArea],
-    ) -> Result<u32, StoreError> {
+    ) -> Result<TurnNo, StoreError> {
         let at = |e| StoreError::io(&self.part.target, e);
         let turns = match &mut self.turns {
             Some(turns) => turns,
             none => none.insert(Turns::create(&self.part.path).map_err(at)?),
         };
-        let first = turns.count;
+        let first = TurnNo::new(turns.count);
         for facts in facts {
             let record = turns::Record::new(&portion.network, facts, |edge| portion.edge(edge));
             turns.rows.push(record.key(), &(turns.count, record)).map_err(at)?;
@@ -208,13 +208,13 @@ impl Writer {
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
-        first: u32,
+        first: TurnNo,
         certificate: &TurnCertificate,
     ) -> Result<(), StoreError> {
         let packed = CompactCertificate::turn(certificate)
-            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
-        let plan = certificate.plan.clone().map(|plan| StoredPlan { at: plan.at + first, ..plan });
-        self.push_turn(vehicle, policy, CompactCertificate { fid: packed.fid + first, ..packed }, plan)
+            .map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn.get(), detail))?;
+        let plan = certificate.plan.clone().map(|plan| StoredPlan { at: plan.at + first.get(), ..plan });
+        self.push_turn(vehicle, policy, CompactCertificate { fid: packed.fid + first.get(), ..packed }, plan)
     }
 
     fn push_turn(
@@ -247,7 +247,7 @@ impl Writer {
         self.push(vehicle, policy, CompactCertificate { fid: edge.get() + 1, ..kept.packed })
     }
 
-    /// Adds a certificate of an older database for the turn with this index.
+    /// Adds a certificate of an older database for the turn with this number.
     ///
     /// # Errors
     /// A temporary file cannot be written.
@@ -255,11 +255,11 @@ impl Writer {
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
-        turn: u32,
+        turn: TurnNo,
         kept: &StoredCertificate,
         plan: Option<StoredPlan>,
     ) -> Result<(), StoreError> {
-        self.push_turn(vehicle, policy, CompactCertificate { fid: turn + 1, ..kept.packed }, plan)
+        self.push_turn(vehicle, policy, CompactCertificate { fid: turn.get() + 1, ..kept.packed }, plan)
     }
 
     /// Adds to the account of the run.

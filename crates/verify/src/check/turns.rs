@@ -15,7 +15,7 @@ use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, LengthClass, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
+use crate::turns::{KerbSource, LengthClass, StrokeLine, TurnCorridors, TurnFacts, TurnNo, TurnParams, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
@@ -43,7 +43,7 @@ pub struct TurnsClaim<'a> {
     /// The database's verdicts for the vehicle, by edge.
     pub edges: &'a BTreeMap<EdgeNo, Verdict>,
     /// The rows to check, by turn.
-    pub rows: &'a BTreeMap<u32, TurnRow>,
+    pub rows: &'a BTreeMap<TurnNo, TurnRow>,
     /// The plans that are not the centreline, by turn.
     pub plans: &'a BTreeMap<u32, Vec<i32>>,
 }
@@ -71,7 +71,7 @@ impl TurnsClaim<'_> {
             for (row, (outcome, km)) in batch.iter().zip(checked) {
                 report.swept_km += km;
                 let verdict = row.certificate.verdict;
-                report.rows.push(RowOutcome { index: row.turn.index, id: row.turn.id, verdict, outcome });
+                report.rows.push(RowOutcome { index: row.turn.index.get(), id: row.turn.id, verdict, outcome });
             }
         }
         Ok(report)
@@ -80,8 +80,7 @@ impl TurnsClaim<'_> {
     /// The lines of the strokes at the ends of these turns. One that takes too long is not made.
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<EdgeNo, u32>) -> Lines {
         let claims = batch.iter().filter(|row| !row_claim::claims_nothing(&row.certificate));
-        let open =
-            claims.filter_map(|row| self.facts.get(row.turn.index as usize)).filter(|t| self.barred(t).is_none());
+        let open = claims.filter_map(|row| self.facts.get(row.turn.index.index())).filter(|t| self.barred(t).is_none());
         let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.iter().copied()));
         let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
         let line = |stroke: u32| {
@@ -157,7 +156,7 @@ impl TurnsClaim<'_> {
 
     /// The outcome of a row, and the kilometres that were swept for it.
     fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<EdgeNo, u32>, lines: &Lines) -> (Outcome, f64) {
-        let Some(turn) = self.facts.get(row.turn.index as usize) else {
+        let Some(turn) = self.facts.get(row.turn.index.index()) else {
             return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
         };
         if let Some(wrong) = self.misdescribed(turn, row) {
@@ -231,7 +230,7 @@ impl TurnsClaim<'_> {
             return (Outcome::Malformed(format!("the turn has no path {code}")), 0.0);
         };
         let none = vec![0; plan::count(path.corridor.len())];
-        let coefficients = self.plans.get(&row.turn.index).unwrap_or(&none);
+        let coefficients = self.plans.get(&row.turn.index.get()).unwrap_or(&none);
         if coefficients.len() != none.len() {
             return (Outcome::Malformed(format!("the plan has {} coefficients", coefficients.len())), 0.0);
         }
