@@ -7,8 +7,8 @@
 use divan::counter::ItemsCount;
 use netcert::corridor::{Corridor, CurvatureProfile, Frame, Params, stroke_corridor};
 use netcert::network::{Edge, EdgeNo, Network, Road, Stroke};
-use netcert::osm::LonLat;
 use netcert::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
+use netcert::osm::{LonLat, NodeId};
 
 fn main() {
     divan::main();
@@ -85,8 +85,8 @@ fn add_stroke(n: &mut Network, degrees: &[[f64; 2]]) {
         n.edges.push(Edge {
             id: i64::from(index) + 1,
             road: u32::from(index.is_multiple_of(8)),
-            from_node: 1,
-            to_node: 2,
+            from_node: NodeId::new(1),
+            to_node: NodeId::new(2),
             direction: Direction::Forward,
             shape: start..(start + 11).min(end),
             narrowings: 0..0,

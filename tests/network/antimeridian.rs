@@ -4,7 +4,7 @@ use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::facts::{Jurisdiction, Rules, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
-use netcert::osm::{Extract, LonLat};
+use netcert::osm::{Extract, LonLat, NodeId};
 
 use crate::portions::compare;
 
@@ -46,7 +46,7 @@ fn fiji() -> (Vec<NodeRecord>, Vec<WayRecord>) {
 }
 
 fn edges(network: &Network) -> Vec<(i64, i64, i64, i64)> {
-    network.edges.iter().map(|e| (e.id, network.road(e).way_id, e.from_node, e.to_node)).collect()
+    network.edges.iter().map(|e| (e.id, network.road(e).way_id, e.from_node.get(), e.to_node.get())).collect()
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_barrier_on_one_side_bars_the_road() {
     nodes[3].tags = vec![("barrier".to_owned(), "bollard".to_owned())];
     let network = network(&nodes, &ways);
     for edge in &network.edges {
-        let touches = [edge.from_node, edge.to_node].contains(&3);
+        let touches = [edge.from_node, edge.to_node].contains(&NodeId::new(3));
         assert_eq!(edge.barred, touches, "{} {}", edge.from_node, edge.to_node);
     }
 }

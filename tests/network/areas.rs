@@ -7,7 +7,7 @@ use netcert::network::build;
 use netcert::osm::facts::{AreaKind, Policy, RoadClass, TrafficSide};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{self, NodeRecord, WayRecord};
-use netcert::osm::{Extract, LonLat};
+use netcert::osm::{Extract, LonLat, NodeId};
 use netcert::turns::{KerbSource, LengthClass, TurnCorridors, turn_corridors};
 
 use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, offset, somewhere};
@@ -145,7 +145,7 @@ fn what_is_left_out_is_counted() {
     cut.areas.push({
         let mut area = cut.areas[2].clone();
         area.id += 1;
-        area.refs[1] = 7;
+        area.refs[1] = NodeId::new(7);
         area
     });
     let (network, account) = build(cut, &somewhere, &no_sections);
@@ -186,11 +186,15 @@ fn closed_ways_are_read_as_areas_and_still_counted_as_no_roads() {
         way(6, &[3, 4, 6, 3], ("area:highway", "traffic_island")),
     ];
     let extract = read(&nodes, &ways);
-    let found: Vec<(i64, AreaKind, &[i64])> =
-        extract.areas.iter().map(|area| (area.id, area.kind, &area.refs[..])).collect();
+    let refs = |area: &netcert::osm::RoadArea| area.refs.iter().map(|node| node.get()).collect::<Vec<_>>();
+    let found: Vec<(i64, AreaKind, Vec<i64>)> =
+        extract.areas.iter().map(|area| (area.id, area.kind, refs(area))).collect();
     let primary = AreaKind::Road(RoadClass::Primary);
-    assert_eq!(found, [(2, primary, &[3, 4, 5, 3][..]), (6, AreaKind::Island, &[3, 4, 6, 3])]);
-    assert!((1..=6).all(|id| extract.nodes.place(id) == Some(place(id))) && extract.nodes.place(7).is_none());
+    assert_eq!(found, [(2, primary, vec![3, 4, 5, 3]), (6, AreaKind::Island, vec![3, 4, 6, 3])]);
+    assert!(
+        (1..=6).all(|id| extract.nodes.place(NodeId::new(id)) == Some(place(id)))
+            && extract.nodes.place(NodeId::new(7)).is_none()
+    );
     let account = &extract.account;
     assert_eq!((account.ways_read, account.ways_kept, account.road_areas), (6, 1, 2));
     assert_eq!(account.ways_left_out.values().sum::<u64>(), 5);

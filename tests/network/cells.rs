@@ -9,7 +9,7 @@ use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
 use netcert::network::{Cell, EdgeNo, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
-use netcert::osm::{Extract, LonLat, NodeTable, Way};
+use netcert::osm::{Extract, LonLat, NodeId, NodeTable, Way};
 use netcert::reporter::Silent;
 use netcert::rows::{EdgeCertificate, TurnCertificate};
 use netcert::settings::{Needs, Settings};
@@ -119,12 +119,14 @@ pub(crate) fn drawn(seed: u64) -> Extract {
     let mut extract = Extract::default();
     for (id, (refs, tags)) in (1..).zip(ways) {
         let start = extract.refs.len() as u32;
-        extract.refs.extend(refs);
+        extract.refs.extend(refs.into_iter().map(NodeId::new));
         let facts = way_facts(tags, &mut extract.strings);
         extract.ways.push(Way { id, refs: start..extract.refs.len() as u32, facts });
     }
-    extract.nodes =
-        NodeTable { ids: nodes.keys().copied().collect(), places: nodes.values().copied().map(Some).collect() };
+    extract.nodes = NodeTable {
+        ids: nodes.keys().copied().map(NodeId::new).collect(),
+        places: nodes.values().copied().map(Some).collect(),
+    };
     extract
 }
 

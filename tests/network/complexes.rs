@@ -10,8 +10,8 @@ use netcert_testing::routing::Region;
 
 use geo::{BooleanOps as _, BoundingRect as _, Distance as _, Euclidean};
 use netcert::network::{EdgeNo, PassageKind};
-use netcert::osm::Via;
 use netcert::osm::facts::{Policy, TrafficSide};
+use netcert::osm::{NodeId, Via};
 use netcert::route::{Measure, PartKind, Position, Question, passes_over};
 use netcert::stop::Stop;
 use netcert::turns::{Kerbs, LengthClass};
@@ -42,7 +42,7 @@ fn drawn(map: &AsciiMap) -> Drawn {
 
 /// The ends of all passages, such as `NS`.
 fn names(drawn: &Drawn) -> Vec<String> {
-    let node = |id: i64| u32::try_from(id).ok().and_then(char::from_u32).unwrap();
+    let node = |id: NodeId| u32::try_from(id.get()).ok().and_then(char::from_u32).unwrap();
     let edge = |edge: EdgeNo| &drawn.network.edges[edge.index()];
     let name = |from: EdgeNo, to: EdgeNo| [node(edge(from).from_node), node(edge(to).to_node)].iter().collect();
     let mut names: Vec<String> = drawn.passages().iter().map(|t| name(t.movement.from, t.movement.to)).collect();

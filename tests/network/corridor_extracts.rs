@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 use netcert::corridor::{Params, stroke_corridor};
 use netcert::network::{Edge, EdgeNo, Network, Road, Stroke};
-use netcert::osm::LonLat;
 use netcert::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
+use netcert::osm::{LonLat, NodeId};
 use netcert::verdict::UnknownReason;
 use osmpbfreader::{OsmObj, OsmPbfReader};
 
@@ -69,8 +69,8 @@ fn edge(index: u32, shape: std::ops::Range<u32>) -> Edge {
     Edge {
         id: i64::from(index) + 1,
         road: index,
-        from_node: 0,
-        to_node: 1,
+        from_node: NodeId::new(0),
+        to_node: NodeId::new(1),
         direction: if index.is_multiple_of(2) { Direction::Forward } else { Direction::Backward },
         shape,
         narrowings: 0..0,

@@ -1,5 +1,6 @@
 //! Roads that are open to a destination only: at the ends of a way, and not in its middle.
 
+use netcert::osm::NodeId;
 use netcert_testing::ascii_map;
 use netcert_testing::catalogue::catalogued;
 
@@ -38,7 +39,7 @@ fn graph(map: &AsciiMap) -> Graph {
 }
 
 fn edges(network: &Network, drive: &Drive) -> String {
-    let end = |node: i64| node_of(node);
+    let end = |node: NodeId| node_of(node);
     let first = drive.edges.first().map(|&e| end(network.edges[e.index()].from_node));
     first.into_iter().chain(drive.edges.iter().map(|&e| end(network.edges[e.index()].to_node))).collect()
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use ascii_map::{no_sections, offset, somewhere, way_facts};
 use netcert::network::{Edge, Network, NetworkAccount, StrokeOptions, build_with};
 use netcert::osm::facts::Direction;
-use netcert::osm::{Extract, LonLat, NodeTable, Way};
+use netcert::osm::{Extract, LonLat, NodeId, NodeTable, Way};
 use proptest::prelude::*;
 
 /// Places of nodes 0.. on a grid (`None`: not in the file), and ways of node numbers.
@@ -47,12 +47,12 @@ fn extract(tangle: &Tangle, base: i64) -> Extract {
     let mut extract = Extract::default();
     for (i, (refs, tags)) in tangle.ways.iter().enumerate() {
         let start = extract.refs.len() as u32;
-        extract.refs.extend(refs.iter().map(|&r| base + i64::from(r)));
+        extract.refs.extend(refs.iter().map(|&r| NodeId::new(base + i64::from(r))));
         let facts = way_facts(tags, &mut extract.strings);
         extract.ways.push(Way { id: base + i as i64, refs: start..extract.refs.len() as u32, facts });
     }
     extract.nodes = NodeTable {
-        ids: (0..tangle.nodes.len()).map(|i| base + i as i64).collect(),
+        ids: (0..tangle.nodes.len()).map(|i| NodeId::new(base + i as i64)).collect(),
         places: tangle.nodes.iter().map(|n| n.as_ref().map(place)).collect(),
     };
     extract
@@ -206,7 +206,7 @@ fn shape_of_strokes(network: &Network) -> BTreeMap<(bool, Vec<Line>, Vec<Line>),
 }
 
 /// Identity of an edge: way, ends, direction, line.
-type Name = (i64, i64, i64, Direction, Vec<LonLat>);
+type Name = (i64, NodeId, NodeId, Direction, Vec<LonLat>);
 
 /// Ids by name. There are several where a way runs over itself.
 fn ids(network: &Network) -> BTreeMap<Name, Vec<i64>> {

@@ -1,6 +1,7 @@
 //! Mapped traffic islands: a turn that they close is not safe, before and after a round trip through the database. Islands,
 //! nodes and crossings that no map should have end in a verdict, too.
 
+use netcert::osm::NodeId;
 use std::collections::BTreeMap;
 
 use geo::{Area as _, BooleanOps as _};
@@ -12,7 +13,7 @@ use netcert::store::{Database, Run};
 use netcert::turns::{LengthClass, TurnCorridors, TurnNo};
 use netcert::verdict::{UnsafeReason, Verdict};
 
-use netcert_testing::ascii_map::{AsciiMap, built, no_sections, somewhere};
+use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, somewhere};
 use netcert_testing::junctions::Drawn;
 
 const LORRY: &str = "EU-SEMI16.5";
@@ -149,9 +150,9 @@ fn an_island_that_is_not_whole_counts_as_the_hull_of_what_is_known() {
     // One node of an island is missing, three of another one; a third one encloses nothing.
     let map = cross().area('B', &IN_THE_WAY, ISLAND).area('B', &IN_THE_WAY, ISLAND);
     let mut extract = map.area('B', &[[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]], ISLAND).extract();
-    extract.areas[0].refs[2] = 7;
+    extract.areas[0].refs[2] = NodeId::new(7);
     for lost in 1..4 {
-        extract.areas[1].refs[lost] = 7;
+        extract.areas[1].refs[lost] = NodeId::new(7);
     }
     let (network, account) = build(extract, &somewhere, &no_sections);
     let kinds: Vec<(AreaKind, usize)> = network.areas.all().iter().map(|area| (area.kind, area.ring.len())).collect();
@@ -183,7 +184,7 @@ fn a_crossing_of_hundreds_of_nodes_has_an_area_of_a_few() {
     let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
     let turn = drawn.facts().into_iter().find(|turn| {
         let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge.index()]);
-        from.from_node == i64::from(u32::from('E')) && to.to_node == i64::from(u32::from(on[101]))
+        from.from_node == id_of('E') && to.to_node == id_of(on[101])
     });
     let made = netcert::turns::corridors_of(
         &drawn.network,

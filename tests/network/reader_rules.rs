@@ -1,5 +1,6 @@
 //! The reader's rules on small files made here: order, duplicates, a wrong header, and paths that are not files.
 
+use netcert::osm::NodeId;
 use std::{fs, path::PathBuf, sync::Mutex};
 
 use netcert::osm::{
@@ -33,7 +34,8 @@ fn read(bytes: &[u8]) -> Result<Extract, ReadError> {
 }
 
 fn refs_of(extract: &Extract) -> Vec<(i64, Vec<i64>)> {
-    let refs = |range: &std::ops::Range<u32>| extract.refs[range.start as usize..range.end as usize].to_vec();
+    let refs = |range: &std::ops::Range<u32>| extract.refs[range.start as usize..range.end as usize].iter();
+    let refs = |range| refs(range).map(|node| node.get()).collect();
     extract.ways.iter().map(|way| (way.id, refs(&way.refs))).collect()
 }
 
@@ -63,8 +65,8 @@ fn what_the_writer_writes_comes_back() {
     let extract = read(&bytes).unwrap();
     assert!(extract.account.header.sorted);
     assert_eq!(refs_of(&extract), [(5, vec![1, 2, -7]), (9, vec![2, 1 << 40])]);
-    assert!(nodes.iter().all(|node| extract.nodes.place(node.id) == Some(node.place)));
-    assert_eq!(extract.points.iter().map(|(id, _)| *id).collect::<Vec<_>>(), [2]);
+    assert!(nodes.iter().all(|node| extract.nodes.place(NodeId::new(node.id)) == Some(node.place)));
+    assert_eq!(extract.points.iter().map(|(id, _)| id.get()).collect::<Vec<_>>(), [2]);
     let name = extract.ways[0].facts.name.map(|id| extract.strings.text(id));
     let reference = extract.ways[1].facts.reference.map(|id| extract.strings.text(id));
     assert_eq!((name, reference), (Some("Long Road"), Some("A 5")));
@@ -120,7 +122,7 @@ fn the_last_way_of_an_id_counts_whatever_it_is() {
         let extract = read(&fenced);
         assert_eq!(refs_of(&extract), [(9, vec![3, 4])]);
         assert_eq!(extract.account.ways_left_out["duplicate_id"], 1);
-        assert_eq!(extract.nodes.ids, [3, 4]);
+        assert_eq!(extract.nodes.ids, [3, 4].map(NodeId::new));
         assert_eq!(extract.account.ways_left_out.values().sum::<u64>() + extract.account.ways_kept, 3);
 
         let extract = read(&reopened);
@@ -139,9 +141,9 @@ fn the_last_node_of_an_id_counts_with_its_tags() {
     for block_objects in [1, 2, 100] {
         let nodes = [node(1), bollard(2, 5), node(3), node(2), bollard(3, 7)];
         let extract = read(&write::write_extract_in_blocks(&nodes, &ways, block_objects)).unwrap();
-        assert_eq!(extract.nodes.place(2), Some(node(2).place));
-        assert_eq!(extract.nodes.place(3), Some(LonLat { lon_e7: 0, lat_e7: 7 }));
-        assert_eq!(extract.points.iter().map(|(id, _)| *id).collect::<Vec<_>>(), [3]);
+        assert_eq!(extract.nodes.place(NodeId::new(2)), Some(node(2).place));
+        assert_eq!(extract.nodes.place(NodeId::new(3)), Some(LonLat { lon_e7: 0, lat_e7: 7 }));
+        assert_eq!(extract.points.iter().map(|(id, _)| id.get()).collect::<Vec<_>>(), [3]);
         assert_eq!(extract.account.nodes.superseded, 2);
     }
 }

@@ -1,6 +1,7 @@
 //! Routes: the search compared with independent searches, whole-route certificates compared with the disturbed
 //! simulator, and the answer if there is no way.
 
+use netcert::osm::NodeId;
 use netcert_testing::ascii_map;
 use netcert_testing::demo::demo;
 use netcert_testing::extracts::extract;
@@ -57,7 +58,7 @@ fn by_nodes(network: &Network, graph: &Graph, from: EdgeNo, to: EdgeNo) -> Optio
     if from == to {
         return Some(graph.cost(from));
     }
-    let mut reached: BTreeMap<i64, u64> = BTreeMap::new();
+    let mut reached: BTreeMap<NodeId, u64> = BTreeMap::new();
     let mut open = BTreeSet::from([(graph.cost(from), edge(from).to_node)]);
     while let Some((cost, node)) = open.pop_first() {
         if reached.contains_key(&node) {

@@ -9,10 +9,10 @@ use std::path::Path;
 use std::process::Command;
 
 use netcert::network::{EdgeNo, Network, build};
-use netcert::osm::LonLat;
 use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
+use netcert::osm::{LonLat, NodeId};
 use netcert::store::QueryOptions;
 use netcert::verdict::Verdict;
 use netcert::words::VerdictKind;
@@ -24,7 +24,7 @@ fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
     let mut pairs = BTreeMap::new();
     for way in &extract.ways {
         for pair in extract.refs[way.refs.start as usize..way.refs.end as usize].windows(2) {
-            *pairs.entry((pair[0], pair[1])).or_default() += 1;
+            *pairs.entry((pair[0].get(), pair[1].get())).or_default() += 1;
         }
     }
     pairs
@@ -40,7 +40,7 @@ fn permitted(place: &WorkFolder) -> (Network, BTreeSet<EdgeNo>) {
 
 /// The last segments of permitted edges from which the only way on is a refused turn.
 fn up_to_refused_corners(place: &WorkFolder, network: &Network, safe: &BTreeSet<EdgeNo>) -> BTreeSet<(LonLat, LonLat)> {
-    let mut ends: BTreeMap<i64, BTreeSet<(u32, bool)>> = BTreeMap::new();
+    let mut ends: BTreeMap<NodeId, BTreeSet<(u32, bool)>> = BTreeMap::new();
     for edge in &network.edges {
         let forward = edge.direction == Direction::Forward;
         ends.entry(edge.from_node).or_default().insert((edge.shape.start, forward));
@@ -74,7 +74,7 @@ fn osrm_tables_close_every_segment_but_those_of_permitted_edges() {
         .collect();
     let (network, safe) = permitted(&place);
     let extract = read_extract(&demo(), &|_| ()).unwrap();
-    let place_of = |node: i64| extract.nodes.place(node).unwrap();
+    let place_of = |node: i64| extract.nodes.place(NodeId::new(node)).unwrap();
     let mut open = BTreeSet::new();
     for &edge in &safe {
         let line: Vec<_> = network.positions(&network.edges[edge.index()]).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use netcert::osm::facts::{Direction, Limit, Oneway, Permission, Policy, WidthSource};
-use netcert::osm::{Extract, Via};
+use netcert::osm::{Extract, NodeId, Via};
 use netcert::overture::{self, Account, OvertureError};
 use netcert::rows::EdgeRow;
 use netcert::store::{Database, QueryOptions};
@@ -167,8 +167,8 @@ fn a_segment_meets_others_where_its_connectors_lie_and_is_cut_where_rules_change
     assert_eq!((extract.ways.len(), side.len(), closed.len()), (6, 2, 2));
     // Only the connector joins the main road and the side road; the road under it has no node of theirs.
     let nodes = |way: &netcert::osm::Way| extract.refs[way.refs.start as usize..way.refs.end as usize].to_vec();
-    let joint: BTreeSet<i64> = main.iter().flat_map(|way| nodes(way)).collect();
-    let met: BTreeSet<i64> = side.iter().flat_map(|way| nodes(way)).filter(|node| joint.contains(node)).collect();
+    let joint: BTreeSet<NodeId> = main.iter().flat_map(|way| nodes(way)).collect();
+    let met: BTreeSet<NodeId> = side.iter().flat_map(|way| nodes(way)).filter(|node| joint.contains(node)).collect();
     let [restriction] = &extract.restrictions[..] else { panic!("{:?}", extract.restrictions) };
     assert_eq!(restriction.via, Via::Nodes(met.into_iter().collect()));
     assert_eq!(
@@ -186,7 +186,7 @@ fn ways_of_service_road(more: Value) -> (Vec<i64>, Account) {
     let road = line(&id(1), &[at(0.0, 0.0), at(800.0, 0.0)], &[(101, 0.0), (102, 1.0)], properties);
     let place = with(&[road], &[point(101, at(0.0, 0.0)), point(102, at(800.0, 0.0))]);
     let (extract, account) = read(&place.path("release")).unwrap();
-    let east = |node: &i64| (f64::from(extract.nodes.place(*node).unwrap().lon_e7) / 1e7 - 150.0) * 95_500.0;
+    let east = |node: &NodeId| (f64::from(extract.nodes.place(*node).unwrap().lon_e7) / 1e7 - 150.0) * 95_500.0;
     let length = |way: &netcert::osm::Way| {
         let refs = &extract.refs[way.refs.start as usize..way.refs.end as usize];
         (east(refs.last().unwrap()) - east(&refs[0])).round() as i64

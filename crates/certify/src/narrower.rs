@@ -9,6 +9,7 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use crate::osm::facts::{CrossSection, Strip};
 use netcert_roads::turns::TurnFacts;
 
@@ -26,7 +27,7 @@ const FAR_STEPS: i16 = 4;
 pub(super) struct MeasuredWidths {
     /// By edge, and by the nodes at its ends.
     edges: FxHashMap<EdgeNo, f32>,
-    nodes: FxHashMap<i64, f32>,
+    nodes: FxHashMap<NodeId, f32>,
 }
 
 impl MeasuredWidths {

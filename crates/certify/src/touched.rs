@@ -8,7 +8,7 @@ use rstar::{AABB, RTree};
 use rustc_hash::FxHashSet;
 
 use crate::network::{EARTH_RADIUS_M, EdgeNo, Network};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use netcert_roads::turns::{TurnFacts, TurnNo};
 
 /// Roads and kerbs at nodes farther from a turn's line than this are no part of its area, metres. Its area has crossings up to 30 m along
@@ -23,13 +23,13 @@ pub struct Touched {
     /// Turns, sorted.
     pub turns: Vec<TurnNo>,
     /// Nodes at which a road's width, a kerb or a surface differs, sorted.
-    pub nodes: Vec<i64>,
+    pub nodes: Vec<NodeId>,
 }
 
 impl Touched {
     /// What may differ if the widths of `edges` (ids) and the kerbs at `nodes` do.
     #[must_use]
-    pub fn find(network: &Network, turns: &[TurnFacts], edges: &[i64], nodes: &[i64]) -> Self {
+    pub fn find(network: &Network, turns: &[TurnFacts], edges: &[i64], nodes: &[NodeId]) -> Self {
         let edges: FxHashSet<i64> = edges.iter().copied().collect();
         let changed: Vec<bool> = network.edges.iter().map(|edge| edges.contains(&edge.id)).collect();
         let of_chain = |stroke: &crate::network::Stroke| {
@@ -39,13 +39,13 @@ impl Touched {
         };
         let strokes: Vec<u32> =
             (0..).zip(&network.strokes).filter(|(_, stroke)| of_chain(stroke)).map(|(index, _)| index).collect();
-        let mut places: FxHashSet<i64> = nodes.iter().copied().collect();
+        let mut places: FxHashSet<NodeId> = nodes.iter().copied().collect();
         for (edge, _) in network.edges.iter().zip(&changed).filter(|(_, changed)| **changed) {
             places.extend([edge.from_node, edge.to_node]);
         }
         let touched = TouchedTurns::new(network, &strokes, &places);
         let turns = TurnNo::all().zip(turns).filter(|(_, turn)| touched.has(turn)).map(|(index, _)| index).collect();
-        let mut nodes: Vec<i64> = places.into_iter().collect();
+        let mut nodes: Vec<NodeId> = places.into_iter().collect();
         nodes.sort_unstable();
         Self { strokes, turns, nodes }
     }
@@ -75,11 +75,11 @@ struct TouchedTurns {
 impl NearNodes {
     /// What is near some nodes of a network, given by their ids.
     #[must_use]
-    pub fn new(network: &Network, nodes: &[i64]) -> Self {
+    pub fn new(network: &Network, nodes: &[NodeId]) -> Self {
         Self::of(network, &nodes.iter().copied().collect())
     }
 
-    fn of(network: &Network, nodes: &FxHashSet<i64>) -> Self {
+    fn of(network: &Network, nodes: &FxHashSet<NodeId>) -> Self {
         let ends = network.edges.iter().filter_map(|edge| {
             let mut line = network.positions(edge);
             let (first, last) = (line.next()?, line.next_back()?);
@@ -108,7 +108,7 @@ impl NearNodes {
 }
 
 impl TouchedTurns {
-    fn new(network: &Network, strokes: &[u32], nodes: &FxHashSet<i64>) -> Self {
+    fn new(network: &Network, strokes: &[u32], nodes: &FxHashSet<NodeId>) -> Self {
         let nodes = NearNodes::of(network, nodes);
         Self { of_edge: network.strokes_of_edges(), strokes: strokes.iter().copied().collect(), nodes }
     }

@@ -6,7 +6,7 @@
 use super::cells::Cells;
 use super::columns::Column;
 use super::row::{Along, Place, Quantity};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::shape::{self, Shape};
 use crate::words::Named as _;
 
@@ -54,8 +54,8 @@ fn point_of_columns(cells: &mut Cells) -> Option<()> {
 fn by_id(cells: &mut Cells) -> Option<Place> {
     let way_id = cells.id(Column::WayId);
     let edge = cells.id(Column::EdgeId);
-    let junction = cells.id(Column::Junction);
-    let nodes = pair(cells, [Column::FromNode, Column::ToNode]);
+    let junction = cells.id(Column::Junction).map(NodeId::new);
+    let nodes = pair(cells, [Column::FromNode, Column::ToNode]).map(|nodes| nodes.map(NodeId::new));
     let edges = pair(cells, [Column::FromEdge, Column::ToEdge]);
     if junction.is_some() && (cells.has(Column::WayId) || cells.has(Column::EdgeId)) {
         return cells.refuse(Column::Junction, "the row names a way or edge, too; keep one of them");

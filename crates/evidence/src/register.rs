@@ -12,6 +12,7 @@ use super::matching::{Match, match_rows};
 use super::row::{Quantity, Row};
 use super::surface::Counted;
 use crate::network::{Edge, EdgeNo, Network, Pieces, Site, pieces};
+use crate::osm::NodeId;
 use crate::osm::facts::{Limit, Policy, WidthSource};
 
 /// Whether a place was found for a measurement.
@@ -48,12 +49,12 @@ pub enum Target {
     /// A junction, or one corner of it.
     Corner {
         /// OSM node id.
-        node: i64,
+        node: NodeId,
         /// `edge_id` of the edge that ends and of the edge that begins at the corner.
         edges: Option<[i64; 2]>,
     },
     /// A junction whose surface was measured: OSM node id.
-    Area(i64),
+    Area(NodeId),
 }
 
 /// A measurement of the register.
@@ -200,8 +201,8 @@ pub struct Decision {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum MeasuredObject {
     Edge(i64),
-    Corner(i64, Option<Pieces>),
-    Area(i64),
+    Corner(NodeId, Option<Pieces>),
+    Area(NodeId),
 }
 
 /// Decides which entries count, and marks them.

@@ -2,7 +2,7 @@
 //!
 //! A row is one measurement: what, how much, how sure, who says so, and where. Nothing here knows the network.
 
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use netcert_base::named;
 
 /// What was measured.
@@ -58,14 +58,14 @@ pub enum Place {
         /// OSM way id.
         way_id: i64,
         /// The nodes at which the part begins and ends. In which order does not matter.
-        nodes: Option<[i64; 2]>,
+        nodes: Option<[NodeId; 2]>,
     },
     /// An edge, by its id.
     Edge(i64),
     /// A junction, or one corner of it.
     Junction {
         /// OSM node id.
-        node: i64,
+        node: NodeId,
         /// Ids of the edge that ends and of the edge that begins at the corner.
         edges: Option<[i64; 2]>,
     },

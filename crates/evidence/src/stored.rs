@@ -3,7 +3,7 @@
 //! The geometry is a GeoPackage's blob: the drawn place; for a surface its polygon; beside ids the position that the row gave.
 
 use super::row::{Place, Quantity, Row, Value};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::rows::Bounds;
 use crate::shape::{self, Shape};
 
@@ -17,11 +17,11 @@ pub struct Columns {
     /// OSM way.
     pub way_id: Option<i64>,
     /// The two OSM nodes between which it holds.
-    pub nodes: Option<[i64; 2]>,
+    pub nodes: Option<[NodeId; 2]>,
     /// Stable id of an edge.
     pub edge_id: Option<i64>,
     /// OSM node of a junction.
-    pub junction: Option<i64>,
+    pub junction: Option<NodeId>,
     /// Stable ids of the edges of a turn.
     pub edges: Option<[i64; 2]>,
     /// The geometry as a GeoPackage's blob.
@@ -167,17 +167,27 @@ mod tests {
             row(
                 Quantity::LaneWidth,
                 width.clone(),
-                Place::Way { way_id: -7, nodes: Some([1, 2]) },
+                Place::Way { way_id: -7, nodes: Some([1, 2].map(NodeId::new)) },
                 Some(at(-1_800_000_000, 1)),
             ),
             row(Quantity::LaneWidth, width.clone(), Place::Edge(i64::MAX), None),
             row(Quantity::CarriagewayWidth, width.clone(), Place::Line(vec![at(3, 4), at(-5, 899_999_999)]), None),
             row(Quantity::DirectionWidth, width.clone(), Place::Point(at(1, 1)), None),
-            row(Quantity::KerbRadius, width, Place::Junction { node: 9, edges: Some([3, 4]) }, None),
+            row(Quantity::KerbRadius, width, Place::Junction { node: NodeId::new(9), edges: Some([3, 4]) }, None),
             row(Quantity::MaxWeight, Value::Tonnes(7.5), Place::Edge(1), None),
-            row(Quantity::DrivableBy, Value::Vehicle("X".to_owned()), Place::Junction { node: 9, edges: None }, None),
+            row(
+                Quantity::DrivableBy,
+                Value::Vehicle("X".to_owned()),
+                Place::Junction { node: NodeId::new(9), edges: None },
+                None,
+            ),
             row(Quantity::Surface, surface.clone(), Place::Polygon(ring.clone()), None),
-            row(Quantity::Surface, surface, Place::Junction { node: 9, edges: None }, ring.first().copied()),
+            row(
+                Quantity::Surface,
+                surface,
+                Place::Junction { node: NodeId::new(9), edges: None },
+                ring.first().copied(),
+            ),
         ] {
             let (value, place, beside) = parts(row.quantity, &row.columns()).unwrap();
             assert_eq!((value, place, beside), (row.value, row.place, row.at));

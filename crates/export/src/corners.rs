@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{ExportError, Source};
+use crate::osm::NodeId;
 use crate::rows::EdgeNo;
 
 impl Source<'_> {
@@ -13,13 +14,13 @@ impl Source<'_> {
     pub(super) fn stopped(&self) -> Result<FxHashSet<EdgeNo>, ExportError> {
         let (vehicle, policy) = (&self.ask.vehicle, self.ask.policy);
         let mut database = self.database()?;
-        let mut refused: Vec<(EdgeNo, i64)> = Vec::new();
+        let mut refused: Vec<(EdgeNo, NodeId)> = Vec::new();
         for step in self.told(database.turn_steps(vehicle, policy)?) {
             let step = step?;
             refused.extend(self.refuses_turn(&step).then_some((step.from, step.via_node)));
         }
         // How many ends of pieces meet at each of these nodes. Both edges of a piece come one after the other.
-        let mut meeting: FxHashMap<i64, u32> = refused.iter().map(|&(_, node)| (node, 0)).collect();
+        let mut meeting: FxHashMap<NodeId, u32> = refused.iter().map(|&(_, node)| (node, 0)).collect();
         let mut piece = None;
         for row in self.told(database.edge_steps(vehicle, policy)?) {
             let row = row?;

@@ -7,6 +7,7 @@
 use std::iter::Peekable;
 
 use super::ExportError;
+use crate::osm::NodeId;
 use crate::osm::facts::Direction;
 use crate::osm::pbf::copy::Blobs;
 use crate::rows::EdgeNo;
@@ -149,6 +150,7 @@ fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize
         Direction::Backward => [row.edge.to_node, row.edge.from_node],
     };
     let steps = (row.positions as usize).checked_sub(1).filter(|&steps| steps > 0)?;
+    let ends = ends.map(NodeId::get);
     let fits = |&place: &usize| {
         line.get(place).is_some_and(|node| node.1 == ends[0])
             && line.get(place + steps).is_some_and(|node| node.1 == ends[1])
@@ -208,6 +210,7 @@ mod tests {
         [from_node, to_node]: [i64; 2],
         direction: Direction,
     ) -> EdgeStep {
+        let [from_node, to_node] = [from_node, to_node].map(NodeId::new);
         let edge = EdgeKey { index: EdgeNo::new(edge), id: i64::from(edge), way_id: 1, from_node, to_node, direction };
         let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
         EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::account::{Account, CONNECTOR};
 use super::ids::Key;
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// Where connectors are.
 #[derive(Debug, Default)]
@@ -27,8 +27,8 @@ impl Connectors {
     }
 
     /// Counts those that are on roads. `on_roads`: whether a road has the node.
-    pub(super) fn count(&self, account: &mut Account, on_roads: impl Fn(i64) -> bool) {
-        let kept = self.places.keys().filter(|key| on_roads(key.number())).count() as u64;
+    pub(super) fn count(&self, account: &mut Account, on_roads: impl Fn(NodeId) -> bool) {
+        let kept = self.places.keys().filter(|key| on_roads(NodeId::new(key.number()))).count() as u64;
         account.kept(CONNECTOR, kept);
         account.left_out(CONNECTOR, "not_on_a_road", self.places.len() as u64 - kept);
         account.left_out(CONNECTOR, "duplicate_id", self.read - self.places.len() as u64);

@@ -9,7 +9,7 @@ use super::connectors::Connectors;
 use super::error::{OvertureError, Problem};
 use super::segment::Road;
 use super::turns;
-use crate::osm::{Extract, LonLat, NodeTable, StringPool, Way};
+use crate::osm::{Extract, LonLat, NodeId, NodeTable, StringPool, Way};
 use crate::rows::SegmentRow;
 
 /// Makes the extract, and says which segment each way is of. `path` names the source in errors.
@@ -40,7 +40,7 @@ pub(super) fn extract(
     }
 
     let mut extract = Extract { restrictions, ..Extract::default() };
-    let mut places: Vec<(i64, LonLat)> = Vec::new();
+    let mut places: Vec<(NodeId, LonLat)> = Vec::new();
     let mut strings = StringPool::default();
     let mut segments = Vec::with_capacity(parts.len());
     for &(id, index, from, to) in &parts {
@@ -49,7 +49,7 @@ pub(super) fn extract(
         for (&node, &place) in road.line.nodes[from..=to].iter().zip(&road.line.places[from..=to]) {
             places.push((node, place));
             // A connector that is named twice may be on two vertices in a row.
-            if extract.refs.get(begin as usize..).and_then(<[i64]>::last) != Some(&node) {
+            if extract.refs.get(begin as usize..).and_then(<[NodeId]>::last) != Some(&node) {
                 extract.refs.push(node);
             }
         }
@@ -73,13 +73,13 @@ pub(super) fn extract(
 }
 
 /// The table of nodes. A connector that no file has lies where the first road has it; elsewhere it would be another node.
-fn nodes(mut places: Vec<(i64, LonLat)>) -> Result<NodeTable, Problem> {
+fn nodes(mut places: Vec<(NodeId, LonLat)>) -> Result<NodeTable, Problem> {
     places.par_sort_unstable();
     places.dedup();
     let near = |a: LonLat, b: LonLat| a.lon_e7.abs_diff(b.lon_e7).max(a.lat_e7.abs_diff(b.lat_e7)) <= NEAR_E7;
     if let Some(pair) = places.windows(2).find(|pair| pair[0].0 == pair[1].0 && !near(pair[0].1, pair[1].1)) {
         let ((lon, lat), number) = (pair[1].1.degrees(), pair[0].0);
-        return Err(Problem::Collision { number, other: format!("the node at {lon:.7}, {lat:.7}") });
+        return Err(Problem::Collision { number: number.get(), other: format!("the node at {lon:.7}, {lat:.7}") });
     }
     places.dedup_by_key(|(id, _)| *id);
     let (ids, places) = places.into_iter().map(|(id, place)| (id, Some(place))).unzip();

@@ -5,19 +5,22 @@ use geo::{Distance as _, Geodesic, Point};
 use rustc_hash::FxHashMap;
 
 use super::ids::Key;
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// A place this near to a vertex is that vertex, metres. A vertex beside it would bend the line.
 const SNAP_M: f64 = 0.1;
 /// A connector this far from its place on the line is not on it, metres.
 const OFF_LINE_M: f64 = 0.5;
 
+/// No node: connectors have positive numbers.
+const NO_NODE: NodeId = NodeId::new(0);
+
 /// A line with numbered vertices.
 #[derive(Debug)]
 pub(super) struct Line {
     pub(super) places: Vec<LonLat>,
-    /// 0 for a vertex without a number yet.
-    pub(super) nodes: Vec<i64>,
+    /// [`NO_NODE`] for a vertex without a number yet.
+    pub(super) nodes: Vec<NodeId>,
     /// Metres from the begin to each vertex.
     along_m: Vec<f64>,
 }
@@ -35,7 +38,7 @@ impl Line {
             so_far_m += distance_m(pair[0], pair[1]);
             along_m.push(so_far_m);
         }
-        Some(Self { nodes: vec![0; places.len()], places, along_m })
+        Some(Self { nodes: vec![NO_NODE; places.len()], places, along_m })
     }
 
     /// The share of a vertex.
@@ -59,14 +62,14 @@ impl Line {
         let between = |a: i32, b: i32| (f64::from(a) + part * (f64::from(b) - f64::from(a))).round() as i32;
         let place = LonLat { lon_e7: between(a.lon_e7, b.lon_e7), lat_e7: between(a.lat_e7, b.lat_e7) };
         self.places.insert(after, place);
-        self.nodes.insert(after, 0);
+        self.nodes.insert(after, NO_NODE);
         self.along_m.insert(after, at_m);
         after
     }
 
     /// Puts a connector on the line: on the vertex at its place, else at its share. `false` if it lies elsewhere, or another
     /// connector is there.
-    pub(super) fn join(&mut self, node: i64, place: Option<LonLat>, at: Option<f64>) -> bool {
+    pub(super) fn join(&mut self, node: NodeId, place: Option<LonLat>, at: Option<f64>) -> bool {
         let same: Vec<usize> = (0..self.places.len()).filter(|&i| place == Some(self.places[i])).collect();
         let vertex = match (same.as_slice(), at) {
             ([vertex], _) | ([vertex, ..], None) => *vertex,
@@ -93,8 +96,8 @@ impl Line {
         self.number(vertex, node)
     }
 
-    fn number(&mut self, vertex: usize, node: i64) -> bool {
-        let free = self.nodes[vertex] == 0 || self.nodes[vertex] == node;
+    fn number(&mut self, vertex: usize, node: NodeId) -> bool {
+        let free = self.nodes[vertex] == NO_NODE || self.nodes[vertex] == node;
         if free {
             self.nodes[vertex] = node;
         }
@@ -102,7 +105,7 @@ impl Line {
     }
 
     fn move_to(&mut self, vertex: usize, place: LonLat) {
-        if self.nodes[vertex] == 0 {
+        if self.nodes[vertex] == NO_NODE {
             self.places[vertex] = place;
         }
     }
@@ -119,10 +122,10 @@ impl Line {
         let mut known: FxHashMap<LonLat, u64> = FxHashMap::default();
         for vertex in 0..self.places.len() {
             let earlier = known.entry(self.places[vertex]).or_default();
-            if self.nodes[vertex] == 0 {
+            if self.nodes[vertex] == NO_NODE {
                 let LonLat { lon_e7, lat_e7 } = self.places[vertex];
                 let place = u64::from(lon_e7.cast_unsigned()) << 32 | u64::from(lat_e7.cast_unsigned());
-                self.nodes[vertex] = key.of_part([place, *earlier]);
+                self.nodes[vertex] = NodeId::new(key.of_part([place, *earlier]));
             }
             *earlier += 1;
         }
@@ -160,34 +163,38 @@ mod tests {
     #[test]
     fn a_connector_joins_where_it_lies() {
         let mut line = line();
-        assert!(line.join(7, Some(at(2000)), Some(0.1)) && line.nodes == [0, 0, 7, 0]);
-        assert!(line.join(8, None, Some(0.75)) && line.nodes == [0, 0, 7, 8, 0]);
+        assert!(line.join(NodeId::new(7), Some(at(2000)), Some(0.1)) && line.nodes == [0, 0, 7, 0].map(NodeId::new));
+        assert!(line.join(NodeId::new(8), None, Some(0.75)) && line.nodes == [0, 0, 7, 8, 0].map(NodeId::new));
         let far = LonLat { lon_e7: 500, lat_e7: 1000 };
-        assert!(!line.join(9, Some(far), Some(0.125)) && line.nodes.len() == 5);
+        assert!(!line.join(NodeId::new(9), Some(far), Some(0.125)) && line.nodes.len() == 5);
         let near = LonLat { lon_e7: 500, lat_e7: 20 };
-        assert!(line.join(9, Some(near), Some(0.125)) && line.places[1] == near);
-        assert!(!line.join(10, Some(at(2000)), None));
+        assert!(line.join(NodeId::new(9), Some(near), Some(0.125)) && line.places[1] == near);
+        assert!(!line.join(NodeId::new(10), Some(at(2000)), None));
         line.number_rest(Key::segment("s"));
-        assert!(line.nodes.iter().all(|node| *node > 0));
+        assert!(line.nodes.iter().all(|node| node.get() > 0));
     }
 
     #[test]
     fn a_line_that_meets_itself_joins_at_the_nearer_share() {
         let mut ring = Line::new(vec![at(0), at(1000), LonLat { lon_e7: 500, lat_e7: 900 }, at(0)]).unwrap();
-        assert!(ring.join(7, Some(at(0)), Some(1.0)) && ring.nodes[3] == 7 && ring.nodes[0] == 0);
-        assert!(ring.join(7, Some(at(0)), Some(0.0)) && ring.nodes[0] == 7);
+        assert!(
+            ring.join(NodeId::new(7), Some(at(0)), Some(1.0))
+                && ring.nodes[3] == NodeId::new(7)
+                && ring.nodes[0] == NodeId::new(0)
+        );
+        assert!(ring.join(NodeId::new(7), Some(at(0)), Some(0.0)) && ring.nodes[0] == NodeId::new(7));
     }
 
     #[test]
     fn a_vertex_is_numbered_by_its_place_and_by_how_often_the_line_was_there() {
         let mut line = Line::new((0..50_000).map(|i| at(i % 2 * 1000)).collect()).unwrap();
-        assert!(line.number(3, 7));
+        assert!(line.number(3, NodeId::new(7)));
         let key = Key::segment("s");
         line.number_rest(key);
         for vertex in [0, 1, 2, 4, 5, 49_999] {
             let place = u64::from(line.places[vertex].lon_e7.cast_unsigned()) << 32;
-            assert_eq!(line.nodes[vertex], key.of_part([place, vertex as u64 / 2]));
+            assert_eq!(line.nodes[vertex].get(), key.of_part([place, vertex as u64 / 2]));
         }
-        assert_eq!(line.nodes[3], 7);
+        assert_eq!(line.nodes[3].get(), 7);
     }
 }

@@ -7,8 +7,8 @@ use super::ids::Key;
 use super::line::Line;
 use super::record::{Segment, Transition};
 use super::rules::Rules;
-use crate::osm::LonLat;
 use crate::osm::facts::{Notes, RoadClass, WayFacts, given_class};
+use crate::osm::{LonLat, NodeId};
 
 /// Left out: fewer than two places.
 const TOO_FEW_PLACES: &str = "too_few_places";
@@ -77,7 +77,7 @@ impl Road {
             if place.is_none() {
                 account.noted(CONNECTOR, "missing", 1);
             }
-            if !line.join(of_connector.number(), place, connector.at) {
+            if !line.join(NodeId::new(of_connector.number()), place, connector.at) {
                 account.noted(CONNECTOR, "off_its_line", 1);
             }
         }
@@ -128,7 +128,7 @@ impl Road {
         }
         let node = self.line.nodes[from];
         let earlier = self.line.nodes[..from].iter().filter(|other| **other == node).count();
-        self.key.of_part([node.cast_unsigned(), earlier as u64])
+        self.key.of_part([node.get().cast_unsigned(), earlier as u64])
     }
 
     /// Cuts the road at a vertex.

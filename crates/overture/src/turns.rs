@@ -8,7 +8,7 @@ use super::record::Transition;
 use super::rules::{concerns_lorries, headings, range};
 use super::segment::Road;
 use crate::osm::facts::{RestrictedTurn, RestrictionKind, TurnRule};
-use crate::osm::{LonLat, Restriction, Via};
+use crate::osm::{LonLat, NodeId, Restriction, Via};
 
 /// The side of a vertex from which vehicles with a heading come.
 #[derive(Debug, Clone, Copy)]
@@ -24,8 +24,8 @@ pub(super) struct Turn {
     /// Where vehicles arrive on that road.
     arrivals: Vec<VertexSide>,
     /// Roads between, each from node to node.
-    between: Vec<(usize, i64, i64)>,
-    via: i64,
+    between: Vec<(usize, NodeId, NodeId)>,
+    via: NodeId,
     to: usize,
     leaving: Vec<VertexSide>,
     conditional: bool,
@@ -85,7 +85,7 @@ fn turn(
         let (Some(connector), Some(segment)) = (&step.connector_id, &step.segment_id) else {
             return Err("not_understood");
         };
-        steps.push((Key::connector(connector).number(), Key::segment(segment)));
+        steps.push((NodeId::new(Key::connector(connector).number()), Key::segment(segment)));
     }
     let (Some(&(first, _)), Some(&(via, last))) = (steps.first(), steps.last()) else { return Err("not_understood") };
     let leaves = match transition.final_heading.as_deref() {
@@ -128,13 +128,13 @@ fn turn(
 }
 
 /// The vertices that have a node.
-fn vertices(road: &Road, node: i64) -> Vec<usize> {
+fn vertices(road: &Road, node: NodeId) -> Vec<usize> {
     (0..road.line.nodes.len()).filter(|&vertex| road.line.nodes[vertex] == node).collect()
 }
 
 /// The vertices at a node at which a road arrives in these headings. A road leaves a vertex in the headings in which it arrives there from the
 /// other side.
-fn passing(road: &Road, node: i64, headings: [bool; 2]) -> Vec<VertexSide> {
+fn passing(road: &Road, node: NodeId, headings: [bool; 2]) -> Vec<VertexSide> {
     let last = road.line.nodes.len() - 1;
     let arrives = |vertex: usize| [headings[0] && vertex > 0, headings[1] && vertex < last];
     let of_vertex = |vertex| {
@@ -189,7 +189,7 @@ fn restriction(roads: &[Road], turn: &Turn) -> Restriction {
 }
 
 /// The ways of a road between two of its nodes, in the order of travel.
-fn between(road: &Road, enter: i64, leave: i64) -> Vec<i64> {
+fn between(road: &Road, enter: NodeId, leave: NodeId) -> Vec<i64> {
     let (starts, ends) = (vertices(road, enter), vertices(road, leave));
     let pairs = starts.iter().flat_map(|&start| ends.iter().map(move |&end| (start, end)));
     let Some((start, end)) = pairs.min_by_key(|(start, end)| start.abs_diff(*end)) else { return Vec::new() };

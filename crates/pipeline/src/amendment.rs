@@ -8,6 +8,7 @@ use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::{NearNodes, Outcome, Touched, TurnOutcome};
 use crate::network::{Differences, EdgeNo, Network, Portion};
+use crate::osm::NodeId;
 use crate::reporter::Reporter;
 use crate::rows::EdgeMeasure;
 use crate::settings::Settings;
@@ -60,7 +61,7 @@ pub(super) fn amendment<'a>(
     let junctions = settings.turns.then(|| {
         let near = NearNodes::new(network, &touched.nodes);
         let places = junction_places(network, turns).into_iter().filter(|(_, place)| near.has(&[*place]));
-        let nodes: Vec<i64> = places.map(|(node, _)| node).collect();
+        let nodes: Vec<NodeId> = places.map(|(node, _)| node).collect();
         let areas = junction_areas(network, &nodes, &settings.turn_params());
         (nodes, areas)
     });

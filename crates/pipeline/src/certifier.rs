@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::account::AccountRow;
 use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
 use crate::network::{EdgeNo, Network, Portion};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
@@ -158,7 +158,7 @@ impl Certifier<'_> {
     }
 
     /// The areas of the junctions at some nodes.
-    fn junctions(&self, network: &Network, places: Vec<(i64, LonLat)>) -> Vec<JunctionArea> {
+    fn junctions(&self, network: &Network, places: Vec<(NodeId, LonLat)>) -> Vec<JunctionArea> {
         let (mut areas, nodes) = match self.earlier {
             Some(earlier) => earlier.junctions(network, &places),
             None => (Vec::new(), places.into_iter().map(|(node, _)| node).collect()),

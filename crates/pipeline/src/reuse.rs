@@ -9,9 +9,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::certify::{NearNodes, Touched};
 use crate::network::{Differences, EdgeNo, Network, Portion};
-use crate::osm::LonLat;
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
+use crate::osm::{LonLat, NodeId};
 use crate::reporter::Silent;
 use crate::rows::{EdgeMeasure, StoredPlan};
 use crate::settings::Settings;
@@ -257,7 +257,7 @@ impl Earlier {
     }
 
     /// The areas that stand of the junctions at some nodes, and the nodes whose areas do not.
-    pub(super) fn junctions(&self, network: &Network, places: &[(i64, LonLat)]) -> (Vec<JunctionArea>, Vec<i64>) {
+    pub(super) fn junctions(&self, network: &Network, places: &[(NodeId, LonLat)]) -> (Vec<JunctionArea>, Vec<NodeId>) {
         let touched = NearNodes::new(network, &self.touched.nodes);
         let (mut stand, mut others) = (Vec::new(), Vec::new());
         for &(node, place) in places {

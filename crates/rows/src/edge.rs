@@ -72,8 +72,8 @@ impl EdgeRow {
         [
             Cell::Integer(Some(self.edge.id)),
             Cell::Integer(Some(self.edge.way_id)),
-            Cell::Integer(Some(self.edge.from_node)),
-            Cell::Integer(Some(self.edge.to_node)),
+            Cell::Integer(Some(self.edge.from_node.get())),
+            Cell::Integer(Some(self.edge.to_node.get())),
             Cell::Text(Some(self.edge.direction.name())),
             Cell::Text(Some(&self.road.highway)),
             Cell::Text(self.road.name.as_deref()),

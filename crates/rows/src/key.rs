@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::osm::StringId;
 use crate::osm::facts::{Direction, highway};
+use crate::osm::{NodeId, StringId};
 use crate::words::Named as _;
 use netcert_roads::network::{EdgeNo, Network, Road};
 use netcert_roads::turns::TurnNo;
@@ -18,9 +18,9 @@ pub struct EdgeKey {
     /// The way in OpenStreetMap.
     pub way_id: i64,
     /// OpenStreetMap's node where the edge begins.
-    pub from_node: i64,
+    pub from_node: NodeId,
     /// OpenStreetMap's node where the edge ends.
-    pub to_node: i64,
+    pub to_node: NodeId,
     /// Along the way, or against it.
     pub direction: Direction,
 }

@@ -1,7 +1,7 @@
 //! Rows of turns: with certificates, and with the facts that a permit depends on.
 
-use crate::osm::LonLat;
 use crate::osm::facts::Policy;
+use crate::osm::{LonLat, NodeId};
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 use netcert_roads::network::EdgeNo;
@@ -19,7 +19,7 @@ pub struct TurnRow {
     pub turn: TurnKey,
     /// The `edge_id`s of the first and last edge between, if the turn is a passage.
     pub arcs: Option<[i64; 2]>,
-    pub via_node: i64,
+    pub via_node: NodeId,
     /// Degrees, positive to the left.
     pub angle_deg: f64,
     pub kind: String,
@@ -80,7 +80,7 @@ impl TurnRow {
             Cell::Integer(Some(self.turn.id)),
             Cell::Integer(Some(self.turn.from_edge)),
             Cell::Integer(Some(self.turn.to_edge)),
-            Cell::Integer(Some(self.via_node)),
+            Cell::Integer(Some(self.via_node.get())),
             Cell::Text(Some(&self.kind)),
             Cell::Real(Some(self.angle_deg)),
             Cell::Real(self.kerb_radius_m),
@@ -117,7 +117,7 @@ pub struct TurnStep {
     pub to: EdgeNo,
     /// The first and last edge between, if the turn is a passage.
     pub arcs: Option<[EdgeNo; 2]>,
-    pub via_node: i64,
+    pub via_node: NodeId,
     pub angle_deg: f64,
     pub verdict: Verdict,
     pub rsc_m: Option<f64>,

@@ -5,7 +5,7 @@
 
 use netcert::network::{Edge, EdgeNo, Network, NetworkAccount, build};
 use netcert::osm::facts::{self, CrossSection, Jurisdiction, PointFacts, WayFacts};
-use netcert::osm::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
+use netcert::osm::{Extract, LonLat, NodeId, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
 
 /// Position of the upper left corner of a drawing.
 const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
@@ -129,7 +129,7 @@ impl AsciiMap {
         for (id, (tags, ring)) in (AREAS..).zip(&self.areas) {
             let pairs: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
             let kind = facts::area_kind(&pairs).unwrap_or_else(|| panic!("{tags} is no area"));
-            let mut refs: Vec<i64> = (0..).zip(ring).map(|(i, _)| 1000 * id + i).collect();
+            let mut refs: Vec<NodeId> = (0..).zip(ring).map(|(i, _)| NodeId::new(1000 * id + i)).collect();
             extract.nodes.ids.extend(&refs);
             extract.nodes.places.extend(ring.iter().copied().map(Some));
             refs.extend(refs.first().copied());
@@ -137,7 +137,7 @@ impl AsciiMap {
         }
     }
 
-    fn place(&self, id: i64) -> Option<LonLat> {
+    fn place(&self, id: NodeId) -> Option<LonLat> {
         let (c, place) =
             *self.nodes.iter().find(|n| id_of(n.0) == id).unwrap_or_else(|| panic!("node {id} is not drawn"));
         (!self.missing.contains(&c)).then_some(place)
@@ -145,13 +145,13 @@ impl AsciiMap {
 }
 
 /// The id of a drawn node.
-pub fn id_of(node: char) -> i64 {
-    i64::from(u32::from(node))
+pub fn id_of(node: char) -> NodeId {
+    NodeId::new(i64::from(u32::from(node)))
 }
 
 /// The drawn node with an id.
-pub fn node_of(id: i64) -> char {
-    u32::try_from(id).ok().and_then(char::from_u32).unwrap_or('?')
+pub fn node_of(id: NodeId) -> char {
+    u32::try_from(id.get()).ok().and_then(char::from_u32).unwrap_or('?')
 }
 
 /// The place east and north of another one, accurate enough for a drawing.
@@ -192,7 +192,7 @@ pub fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
 
 /// The edge from one drawn node to another, `AB`.
 pub fn edge(network: &Network, ends: &str) -> EdgeNo {
-    let ends: Vec<i64> = ends.chars().map(id_of).collect();
+    let ends: Vec<NodeId> = ends.chars().map(id_of).collect();
     let found = network.numbered_edges().find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
     found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
 }

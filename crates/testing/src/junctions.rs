@@ -13,6 +13,7 @@ use netcert::verdict::{UnknownReason, Verdict};
 
 use crate::ascii_map::{AsciiMap, id_of};
 use crate::catalogue::catalogued;
+use netcert::osm::NodeId;
 use netcert::reporter::Silent;
 
 pub struct Drawn {
@@ -39,8 +40,8 @@ impl Drawn {
 
     /// The turn with the nodes that it passes: `EBC` from E over B to C.
     pub fn turn(&self, nodes: &str) -> TurnFacts {
-        let ids: Vec<i64> = nodes.chars().map(id_of).collect();
-        let is = |edge: EdgeNo, from: i64, to: i64| {
+        let ids: Vec<NodeId> = nodes.chars().map(id_of).collect();
+        let is = |edge: EdgeNo, from: NodeId, to: NodeId| {
             let edge = &self.network.edges[edge.index()];
             (edge.from_node, edge.to_node) == (from, to)
         };
@@ -55,7 +56,7 @@ impl Drawn {
 
     /// The passage from the end of one arm to the end of another: `WE`.
     pub fn passage(&self, ends: &str) -> TurnFacts {
-        let ids: Vec<i64> = ends.chars().map(id_of).collect();
+        let ids: Vec<NodeId> = ends.chars().map(id_of).collect();
         let edge = |edge: EdgeNo| &self.network.edges[edge.index()];
         let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
         self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))

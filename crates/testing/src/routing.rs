@@ -10,7 +10,7 @@ use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
 use netcert::network::{Movement, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
-use netcert::osm::{Extract, LonLat, Way};
+use netcert::osm::{Extract, LonLat, NodeId, Way};
 use netcert::route::{self, MadeTurns, Measure, Permit, Permits, Planner, Roads, Speeds, Strokes};
 use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
@@ -59,7 +59,7 @@ impl Region {
     /// The roads within the given degrees of the middle of an extract's nodes.
     pub fn read_middle(path: &Path, policy: Policy, about_deg: [f64; 2]) -> Self {
         let mut extract = read_extract(path, &|_| ()).unwrap();
-        let degrees = |id: &i64| extract.nodes.place(*id).map(LonLat::degrees);
+        let degrees = |id: &NodeId| extract.nodes.place(*id).map(LonLat::degrees);
         let refs = |way: &Way| extract.refs[way.refs.start as usize..way.refs.end as usize].iter();
         let middle = |k: fn((f64, f64)) -> f64| {
             let mut all: Vec<f64> = extract.refs.iter().filter_map(degrees).map(k).collect();

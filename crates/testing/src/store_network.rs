@@ -4,11 +4,11 @@
 use std::num::NonZeroU8;
 
 use netcert::network::{Area, Areas, Edge, EdgeNo, Narrowing, Network, Restriction, Road, Stroke};
-use netcert::osm::LonLat;
 use netcert::osm::facts::{
     AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, RuleSet, Strip,
     WidthSource,
 };
+use netcert::osm::{LonLat, NodeId};
 use netcert::rows::{Conclusion, EdgeCertificate, Measured};
 use netcert::stet::Side;
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -71,7 +71,7 @@ fn add_way(network: &mut Network, way: u32) {
     let narrowings = narrow..network.narrowings.len() as u32;
     // Two edges share the vertex where the way is cut, and both directions share a shape.
     for (part, shape) in [start..start + 4, start + 3..start + 7].into_iter().enumerate() {
-        let nodes = [i64::from(way) * 10 + part as i64, i64::from(way) * 10 + part as i64 + 1];
+        let nodes = [0, 1].map(|end| NodeId::new(i64::from(way) * 10 + part as i64 + end));
         for direction in [Direction::Forward, Direction::Backward] {
             if direction == Direction::Backward && oneway == Oneway::Forward {
                 continue;

@@ -4,7 +4,7 @@ use geo::{Contains as _, LineString, Point, Polygon};
 
 use super::index::Index;
 use super::{Found, Match, unmatched};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::row::{Row, Value};
 
 /// The junctions inside the row's polygon.
@@ -13,7 +13,8 @@ pub(super) fn matched(index: &Index<'_>, row: &Row) -> Found {
     let polygon = polygon(rings);
     let Some(outer) = rings.first() else { return unmatched("no polygon") };
     let near = index.junctions_near(outer, 0.0);
-    let nodes: Vec<i64> = near.into_iter().filter(|(_, at)| polygon.contains(&point(*at))).map(|(id, _)| id).collect();
+    let nodes: Vec<NodeId> =
+        near.into_iter().filter(|(_, at)| polygon.contains(&point(*at))).map(|(id, _)| id).collect();
     if nodes.is_empty() {
         return unmatched("no junction lies on the surface");
     }
@@ -21,7 +22,7 @@ pub(super) fn matched(index: &Index<'_>, row: &Row) -> Found {
 }
 
 /// A junction that the row names must lie on its surface.
-pub(super) fn of_node(row: &Row, node: i64, at: LonLat) -> Found {
+pub(super) fn of_node(row: &Row, node: NodeId, at: LonLat) -> Found {
     let Value::Polygon(rings) = &row.value else { return unmatched("no polygon") };
     if !polygon(rings).contains(&point(at)) {
         return unmatched(format!("node {node} does not lie on the surface"));

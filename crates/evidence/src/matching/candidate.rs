@@ -8,7 +8,7 @@ use super::index::{Index, RoadPiece};
 use super::names::Fit;
 use super::track::{Track, turn_deg};
 use crate::network::EdgeNo;
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::row::Along;
 
 /// Greatest distance between a road and what was drawn along it, metres.
@@ -119,7 +119,7 @@ impl<'i> Candidate<'i> {
     }
 
     /// The nodes at which the line comes to the piece and leaves it.
-    pub(super) fn nodes(&self) -> [i64; 2] {
+    pub(super) fn nodes(&self) -> [NodeId; 2] {
         let [a, b] = self.piece.ends;
         if self.ahead { [a, b] } else { [b, a] }
     }

@@ -9,14 +9,14 @@ use rstar::{AABB, RTree};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::network::{EARTH_RADIUS_M, Edge, EdgeNo, Network, Road, offset_m};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// A piece of road: what lies between two nodes of a way, in both directions.
 pub(super) struct RoadPiece {
     /// Its edges along the way and against it; at least one.
     pub(super) edges: [Option<EdgeNo>; 2],
     /// Its nodes in the order of the way.
-    pub(super) ends: [i64; 2],
+    pub(super) ends: [NodeId; 2],
     road: u32,
     shape: Range<u32>,
 }
@@ -29,7 +29,7 @@ struct Node {
 }
 
 type Segment = GeomWithData<Rectangle<[f64; 2]>, u32>;
-type Junction = GeomWithData<[f64; 2], i64>;
+type Junction = GeomWithData<[f64; 2], NodeId>;
 
 /// The network, prepared for matching.
 pub(super) struct Index<'n> {
@@ -39,13 +39,13 @@ pub(super) struct Index<'n> {
     segments: RTree<Segment>,
     junctions: RTree<Junction>,
     edges: FxHashMap<i64, EdgeNo>,
-    nodes: FxHashMap<i64, Node>,
+    nodes: FxHashMap<NodeId, Node>,
 }
 
 impl<'n> Index<'n> {
     pub(super) fn new(network: &'n Network) -> Self {
         let pieces = pieces(network);
-        let mut nodes: FxHashMap<i64, Node> = FxHashMap::default();
+        let mut nodes: FxHashMap<NodeId, Node> = FxHashMap::default();
         let mut segments = Vec::new();
         for (index, piece) in (0_u32..).zip(&pieces) {
             let shape = &network.shapes[piece.shape.start as usize..piece.shape.end as usize];
@@ -56,7 +56,7 @@ impl<'n> Index<'n> {
             }
         }
         let bends = stroke_ends(network);
-        let is_junction = |id: &i64, node: &Node| match node.arms.len() {
+        let is_junction = |id: &NodeId, node: &Node| match node.arms.len() {
             0 | 1 => false,
             2 => bends.contains(id),
             _ => true,
@@ -87,7 +87,7 @@ impl<'n> Index<'n> {
     }
 
     /// Where a node is at which a road begins or ends.
-    pub(super) fn node(&self, id: i64) -> Option<LonLat> {
+    pub(super) fn node(&self, id: NodeId) -> Option<LonLat> {
         self.nodes.get(&id).map(|node| node.at)
     }
 
@@ -122,12 +122,12 @@ impl<'n> Index<'n> {
 
     /// Junctions in a box around these positions, with their places; sorted by id. A junction has at least three ends of road, or two
     /// between which a vehicle turns.
-    pub(super) fn junctions_near(&self, positions: &[LonLat], reach_m: f64) -> Vec<(i64, LonLat)> {
+    pub(super) fn junctions_near(&self, positions: &[LonLat], reach_m: f64) -> Vec<(NodeId, LonLat)> {
         let near = |around: &AABB<[f64; 2]>| {
             let found = self.junctions.locate_in_envelope(around).map(|junction| junction.data);
             found.collect::<Vec<_>>()
         };
-        let mut found: Vec<i64> = boxes(positions, reach_m).iter().flat_map(near).collect();
+        let mut found: Vec<NodeId> = boxes(positions, reach_m).iter().flat_map(near).collect();
         found.sort_unstable();
         found.dedup();
         found.into_iter().filter_map(|id| Some((id, self.node(id)?))).collect()
@@ -143,7 +143,7 @@ impl<'n> Index<'n> {
 }
 
 /// The nodes at which strokes begin or end. Where only two roads meet, such a node is a sharp bend.
-fn stroke_ends(network: &Network) -> FxHashSet<i64> {
+fn stroke_ends(network: &Network) -> FxHashSet<NodeId> {
     let edge = |index: &EdgeNo| network.edges.get(index.index());
     let open = network.strokes.iter().filter(|stroke| !stroke.closed);
     let edges = open.map(|stroke| &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize]);

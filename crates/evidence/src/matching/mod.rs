@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use super::row::{Along, Place, Row};
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use index::Index;
 
 /// What a row means.
@@ -27,12 +28,12 @@ pub enum Match {
     /// A junction, or one corner of it.
     Corner {
         /// OSM node id.
-        node: i64,
+        node: NodeId,
         /// The edge that ends and the edge that begins at the corner: indices into [`Network::edges`].
         edges: Option<[EdgeNo; 2]>,
     },
     /// The surface of these junctions: OSM node ids, sorted, at least one.
-    Area(Vec<i64>),
+    Area(Vec<NodeId>),
     /// No road or junction. The text says why.
     Unmatched(String),
     /// Several could be meant. The text names them with their distances.

@@ -4,7 +4,7 @@ use super::index::{Index, RoadPiece};
 use super::track::Track;
 use super::{Found, Match, directed, unmatched};
 use crate::network::{EdgeNo, offset_m};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::row::Row;
 use crate::words::Named as _;
 
@@ -44,7 +44,7 @@ fn edges_of(index: &Index<'_>, way_id: i64) -> String {
 }
 
 /// The edges of a way, or of a part of it, in the directions that the row means.
-pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[i64; 2]>) -> Found {
+pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[NodeId; 2]>) -> Found {
     let all = index.of_way(way_id);
     if all.is_empty() {
         return unmatched(format!("way {way_id} is no road of this network"));
@@ -63,15 +63,15 @@ pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[i64;
 }
 
 /// The pieces between two nodes of a way. A closed way goes on over its end.
-fn between(all: &[RoadPiece], [a, b]: [i64; 2]) -> Result<Vec<&RoadPiece>, String> {
-    let known = |node: &i64| all.iter().any(|piece| piece.ends.contains(node));
+fn between(all: &[RoadPiece], [a, b]: [NodeId; 2]) -> Result<Vec<&RoadPiece>, String> {
+    let known = |node: &NodeId| all.iter().any(|piece| piece.ends.contains(node));
     if let Some(node) = [a, b].iter().find(|node| !known(node)) {
         let mut ends: Vec<String> = all.iter().flat_map(|piece| piece.ends).map(|node| node.to_string()).collect();
         ends.dedup();
         return Err(format!("no edge begins or ends at node {node}; they do at {}", ends.join(", ")));
     }
     let closed = all.first().map(|piece| piece.ends[0]) == all.last().map(|piece| piece.ends[1]);
-    let run = |from: i64, to: i64, laps: usize| {
+    let run = |from: NodeId, to: NodeId, laps: usize| {
         let start = all.iter().position(|piece| piece.ends[0] == from)?;
         let length = 1 + all.iter().cycle().skip(start).take(laps * all.len() - start).position(|p| p.ends[1] == to)?;
         (length <= all.len()).then(|| all.iter().cycle().skip(start).take(length).collect())
@@ -81,7 +81,7 @@ fn between(all: &[RoadPiece], [a, b]: [i64; 2]) -> Result<Vec<&RoadPiece>, Strin
 }
 
 /// A junction, or the corner of it between two edges.
-pub(super) fn junction(index: &Index<'_>, row: &Row, node: i64, edges: Option<[i64; 2]>) -> Found {
+pub(super) fn junction(index: &Index<'_>, row: &Row, node: NodeId, edges: Option<[i64; 2]>) -> Found {
     let Some(at) = index.node(node) else {
         return unmatched(format!("no edge begins or ends at node {node}"));
     };
@@ -105,7 +105,7 @@ pub(super) fn junction(index: &Index<'_>, row: &Row, node: i64, edges: Option<[i
 }
 
 /// The edges at a node, for messages.
-fn edges_at(index: &Index<'_>, node: i64) -> String {
+fn edges_at(index: &Index<'_>, node: NodeId) -> String {
     let ids = |ends: bool| {
         let at = index.network.crossings.at(node).iter().map(|&edge| &index.network.edges[edge.index()]);
         let at = at.filter(|edge| if ends { edge.to_node == node } else { edge.from_node == node });

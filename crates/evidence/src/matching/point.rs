@@ -7,7 +7,7 @@ use super::rivals::could_be_meant;
 use super::track::Track;
 use super::{Found, Match, directed, listed, unmatched};
 use crate::network::{EdgeNo, offset_m};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::row::{Quantity, Row};
 
 /// Greatest distance of a kerb's position from the node of its junction, metres.
@@ -58,7 +58,7 @@ fn road(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
 fn junction(index: &Index<'_>, at: LonLat) -> Found {
     let distance_m = |place: LonLat| offset_m(at, place).into_iter().fold(0.0, f64::hypot);
     let near = index.junctions_near(&[at], JUNCTION_M).into_iter().map(|(id, place)| (distance_m(place), id));
-    let mut all: Vec<(f64, i64)> = near.filter(|near| near.0 <= JUNCTION_M).collect();
+    let mut all: Vec<(f64, NodeId)> = near.filter(|near| near.0 <= JUNCTION_M).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let Some(&(best_m, node)) = all.first() else { return unmatched("no junction within 25 m") };
     let meant = all.iter().filter(|near| could_be_meant(near.0, best_m));

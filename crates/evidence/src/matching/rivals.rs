@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::candidate::{Candidate, STEP_M};
 use super::names::Fit;
+use crate::osm::NodeId;
 use crate::watch;
 
 /// A road within this distance could be meant whatever else is near: four times the 3 m by which positions of plain receivers
@@ -38,7 +39,7 @@ pub(super) enum Standing {
 /// What decides whether a line follows a candidate.
 struct Link {
     /// The nodes at which the line comes to it and leaves it.
-    nodes: [i64; 2],
+    nodes: [NodeId; 2],
     /// The part of the line beside it, metres.
     stretch: [f64; 2],
     /// See [`Candidate::left_open_m`].
@@ -58,7 +59,7 @@ pub(super) fn followed(all: &[Candidate<'_>], line_m: f64) -> Vec<bool> {
 fn followed_links(all: &[Link], line_m: f64) -> Vec<bool> {
     // By node: those that end there, the one that begins first on the line in front; and those that begin there, the one that ends last in
     // front. Dropped ones are taken out.
-    let (mut into, mut out) = (FxHashMap::<i64, Vec<usize>>::default(), FxHashMap::<i64, Vec<usize>>::default());
+    let (mut into, mut out) = (FxHashMap::<NodeId, Vec<usize>>::default(), FxHashMap::<NodeId, Vec<usize>>::default());
     for (i, link) in all.iter().enumerate() {
         out.entry(link.nodes[0]).or_default().push(i);
         into.entry(link.nodes[1]).or_default().push(i);
@@ -72,7 +73,7 @@ fn followed_links(all: &[Link], line_m: f64) -> Vec<bool> {
         watch::poll();
         listed[i] = false;
         let Link { nodes: [start, end], stretch: [from, to], left_open_m: [before_m, after_m] } = all[i];
-        let first = |ends: &FxHashMap<i64, Vec<usize>>, node: i64| {
+        let first = |ends: &FxHashMap<NodeId, Vec<usize>>, node: NodeId| {
             ends.get(&node).and_then(|ends| ends.iter().find(|&&j| j != i)).map(|&j| all[j].stretch)
         };
         let comes = from <= ALONG_M || before_m <= ALONG_M && first(&into, start).is_some_and(|other| other[0] < from);
@@ -189,7 +190,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn link(nodes: [i64; 2], stretch: [f64; 2], left_open_m: [f64; 2]) -> Link {
-        Link { nodes, stretch, left_open_m }
+        Link { nodes: nodes.map(NodeId::new), stretch, left_open_m }
     }
 
     /// A chain that begins beside the line's middle and is loose there: each piece falls because of the one before. Round by round over

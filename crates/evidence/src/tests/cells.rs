@@ -2,7 +2,7 @@
 
 use super::super::{Along, Place, Quantity, Value};
 use super::write::read_csv;
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 const SOURCE: &str = "office";
 
@@ -17,7 +17,7 @@ fn every_column_says_what_it_says() {
     assert_eq!((rows.len(), row.number, row.id.as_deref()), (1, 2, Some("a7")));
     assert_eq!((row.quantity, &row.value), (Quantity::LaneWidth, &Value::Metres(3.25)));
     assert!((row.sigma - 0.05).abs() < 1e-12);
-    assert_eq!(row.place, Place::Way { way_id: 12, nodes: Some([34, 56]) });
+    assert_eq!(row.place, Place::Way { way_id: 12, nodes: Some([34, 56].map(NodeId::new)) });
     assert_eq!((row.along, row.way_id, row.at), (Along::Backward, Some(12), None));
     assert_eq!(
         (row.source.as_str(), row.date.as_deref(), row.licence.as_deref()),
@@ -45,8 +45,8 @@ fn every_quantity_has_its_place_and_value() {
     let at = |lon_e7, lat_e7| LonLat { lon_e7, lat_e7 };
     assert_eq!(places[0], &Place::Edge(9));
     assert_eq!(places[1], &Place::Point(at(85_000_000, 495_000_000)));
-    assert_eq!(places[2], &Place::Junction { node: 77, edges: Some([5, 6]) });
-    assert_eq!(places[3], &Place::Junction { node: 77, edges: None });
+    assert_eq!(places[2], &Place::Junction { node: NodeId::new(77), edges: Some([5, 6]) });
+    assert_eq!(places[3], &Place::Junction { node: NodeId::new(77), edges: None });
     assert_eq!(places[4], &Place::Line(vec![at(80_000_000, 490_000_000), at(81_000_000, 490_000_000)]));
     let ring =
         [(80_000_000, 490_000_000), (81_000_000, 490_000_000), (81_000_000, 491_000_000), (80_000_000, 490_000_000)];

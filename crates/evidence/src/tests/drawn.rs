@@ -3,7 +3,7 @@
 use super::super::{Along, Match, Place, Quantity, Row, Value, match_rows};
 use crate::network::{EdgeNo, Network, build};
 use crate::osm::facts::{CrossSection, Jurisdiction, way_facts};
-use crate::osm::{Extract, LonLat, NodeTable, Way};
+use crate::osm::{Extract, LonLat, NodeId, NodeTable, Way};
 
 /// The place of `[0, 0]`.
 const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
@@ -65,7 +65,7 @@ impl Drawing {
         self.nodes.sort();
         for (id, nodes, tags) in &self.ways {
             let start = extract.refs.len() as u32;
-            extract.refs.extend(nodes);
+            extract.refs.extend(nodes.iter().copied().map(NodeId::new));
             let tags: Vec<(&str, &str)> = tags.iter().map(|(key, value)| (*key, value.as_str())).collect();
             let draft = way_facts(&tags).unwrap();
             let mut facts = draft.facts;
@@ -73,7 +73,7 @@ impl Drawing {
             facts.reference = draft.reference.map(|name| extract.strings.intern(name));
             extract.ways.push(Way { id: *id, refs: start..extract.refs.len() as u32, facts });
         }
-        let (ids, places) = self.nodes.iter().map(|&(id, place)| (id, Some(place))).unzip();
+        let (ids, places) = self.nodes.iter().map(|&(id, place)| (NodeId::new(id), Some(place))).unzip();
         extract.nodes = NodeTable { ids, places };
         let country = |_: LonLat| Jurisdiction { country: *b"DE", left_hand_traffic: false };
         let none = CrossSection { lane: None, direction: None, carriageway: None };
@@ -135,5 +135,5 @@ pub(super) fn told(network: &Network, row: &Row) -> String {
 
 /// The id of the edge between two nodes.
 pub(super) fn edge_id(network: &Network, from: i64, to: i64) -> i64 {
-    network.edges.iter().find(|edge| (edge.from_node, edge.to_node) == (from, to)).unwrap().id
+    network.edges.iter().find(|edge| (edge.from_node.get(), edge.to_node.get()) == (from, to)).unwrap().id
 }

@@ -3,6 +3,7 @@
 use super::super::{Along, Place, Quantity, Row, Value};
 use super::drawn::{Drawing, at, edge_id, point, row, told};
 use crate::network::Network;
+use crate::osm::NodeId;
 
 /// A main road 1-2-3-4, a side road 2-5, a one-way road 3-6, and a ring 10-11-12.
 fn network() -> Network {
@@ -25,7 +26,7 @@ fn network() -> Network {
 }
 
 fn way(way_id: i64, nodes: Option<[i64; 2]>) -> Row {
-    row(Place::Way { way_id, nodes })
+    row(Place::Way { way_id, nodes: nodes.map(|nodes| nodes.map(NodeId::new)) })
 }
 
 #[test]
@@ -68,7 +69,7 @@ fn a_ring_goes_on_over_its_end() {
 #[test]
 fn a_corner_is_between_an_edge_that_ends_and_one_that_begins() {
     let network = network();
-    let corner = |edges| Row { quantity: Quantity::KerbRadius, ..row(Place::Junction { node: 2, edges }) };
+    let corner = |edges| Row { quantity: Quantity::KerbRadius, ..row(Place::Junction { node: NodeId::new(2), edges }) };
     let [to, away, far] = [(1, 2), (2, 5), (3, 4)].map(|(from, to)| edge_id(&network, from, to));
     assert_eq!(told(&network, &corner(None)), "corner 2");
     assert_eq!(told(&network, &corner(Some([to, away]))), "corner 2 1:1-2 2:2-5");
@@ -76,7 +77,7 @@ fn a_corner_is_between_an_edge_that_ends_and_one_that_begins() {
     assert_eq!(told(&network, &corner(Some([away, away]))), wrong);
     assert_eq!(told(&network, &corner(Some([to, far]))), format!("unmatched: edge {far} begins at node 3, not 2"));
     assert!(told(&network, &corner(Some([to, 7]))).starts_with("unmatched: no edge 7; at node 2 end "));
-    let gone = Row { quantity: Quantity::KerbRadius, ..row(Place::Junction { node: 99, edges: None }) };
+    let gone = Row { quantity: Quantity::KerbRadius, ..row(Place::Junction { node: NodeId::new(99), edges: None }) };
     assert_eq!(told(&network, &gone), "unmatched: no edge begins or ends at node 99");
 }
 
@@ -106,8 +107,8 @@ fn a_surface_is_that_of_the_junctions_on_it() {
     assert_eq!(told(&network, &ring(100.0, true)), "unmatched: no junction lies on the surface");
     assert_eq!(told(&network, &ring(50.0, false)), "unmatched: no junction lies on the surface");
     let named = |node| Row { place: Place::Junction { node, edges: None }, ..ring(100.0, false) };
-    assert_eq!(told(&network, &named(2)), "area [2]");
-    assert_eq!(told(&network, &named(3)), "unmatched: node 3 does not lie on the surface");
+    assert_eq!(told(&network, &named(NodeId::new(2))), "area [2]");
+    assert_eq!(told(&network, &named(NodeId::new(3))), "unmatched: node 3 does not lie on the surface");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::changes::Kind;
 use super::extract::LonLat;
 use super::facts::BackdropKind;
+use crate::osm::NodeId;
 
 /// A thing behind the roads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,8 +48,8 @@ const TOGETHER: usize = 500;
 const METRES_PER_E7: f64 = 0.011_131_949;
 
 /// The rings that ways form, end to end; `None` if some do not close. Ways are node ids.
-pub(super) fn rings(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
-    let mut at_end: FxHashMap<i64, Vec<usize>> = FxHashMap::default();
+pub(super) fn rings(ways: &[&[NodeId]]) -> Option<Vec<Vec<NodeId>>> {
+    let mut at_end: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
     for (number, way) in ways.iter().enumerate().filter(|(_, way)| way.first() != way.last()) {
         for end in [way.first(), way.last()].into_iter().flatten() {
             at_end.entry(*end).or_default().push(number);
@@ -162,12 +163,18 @@ fn line_of(ring: &[LonLat]) -> LineString {
 mod tests {
     use super::*;
 
+    fn rings_of(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
+        let ways: Vec<Vec<NodeId>> = ways.iter().map(|way| way.iter().copied().map(NodeId::new).collect()).collect();
+        let found = rings(&ways.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+        Some(found.iter().map(|ring| ring.iter().map(|node| node.get()).collect()).collect())
+    }
+
     #[test]
     fn ways_form_rings_whatever_their_directions() {
-        let found = rings(&[&[1, 2, 3], &[7, 8, 9, 7], &[1, 5, 4], &[3, 4]]);
+        let found = rings_of(&[&[1, 2, 3], &[7, 8, 9, 7], &[1, 5, 4], &[3, 4]]);
         assert_eq!(found, Some(vec![vec![1, 2, 3, 4, 5, 1], vec![7, 8, 9, 7]]));
-        assert_eq!(rings(&[&[7, 8, 9, 7], &[20, 21, 22]]), None);
-        assert_eq!(rings(&[]), Some(vec![]));
+        assert_eq!(rings_of(&[&[7, 8, 9, 7], &[20, 21, 22]]), None);
+        assert_eq!(rings_of(&[]), Some(vec![]));
     }
 
     #[test]
@@ -191,8 +198,8 @@ mod tests {
         let saw = |k: i32| LonLat { lon_e7: 1000 * k, lat_e7: if k % 2 == 0 { 0 } else { 1000 + k } };
         let line: Vec<LonLat> = (0..200_000).map(saw).collect();
         assert_eq!(simplified(&line), line);
-        let ways: Vec<[i64; 3]> = (0..200_000).map(|k| [1, 10 + k, 2]).collect();
-        let ways: Vec<&[i64]> = ways.iter().map(<[i64; 3]>::as_slice).collect();
+        let ways: Vec<[NodeId; 3]> = (0..200_000).map(|k| [1, 10 + k, 2].map(NodeId::new)).collect();
+        let ways: Vec<&[NodeId]> = ways.iter().map(<[NodeId; 3]>::as_slice).collect();
         assert_eq!(rings(&ways).map(|rings| rings.len()), Some(100_000));
     }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::backdrop::Backdrop;
+use crate::osm::NodeId;
 use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
 
 /// A position on WGS 84 in units of 1e-7 degree, the file's own resolution.
@@ -63,14 +64,14 @@ pub struct RoadArea {
     /// Surface or island.
     pub kind: AreaKind,
     /// Its node references in order: at least four, and the last equals the first.
-    pub refs: Vec<i64>,
+    pub refs: Vec<NodeId>,
 }
 
 /// The members between the `from` and `to` ways of a restriction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Via {
     /// A node. If there are several, the restriction holds at each of them. If there is none, it holds where the ways meet.
-    Nodes(Vec<i64>),
+    Nodes(Vec<NodeId>),
     /// Ways, driven one after the other, usually in this order.
     Ways(Vec<i64>),
 }
@@ -80,7 +81,7 @@ pub enum Via {
 #[derive(Debug, Clone, Default)]
 pub struct NodeTable {
     /// Sorted, distinct node ids.
-    pub ids: Vec<i64>,
+    pub ids: Vec<NodeId>,
     /// Parallel to `ids`. `None` if the file has no such node, or has it at an invalid place.
     pub places: Vec<Option<LonLat>>,
 }
@@ -88,13 +89,13 @@ pub struct NodeTable {
 impl NodeTable {
     /// The position of a node, if the file had it.
     #[must_use]
-    pub fn place(&self, id: i64) -> Option<LonLat> {
+    pub fn place(&self, id: NodeId) -> Option<LonLat> {
         self.index(id).and_then(|i| self.places[i])
     }
 
     /// The index of a node in the table, whether or not it has a position.
     #[must_use]
-    pub fn index(&self, id: i64) -> Option<usize> {
+    pub fn index(&self, id: NodeId) -> Option<usize> {
         self.ids.binary_search(&id).ok()
     }
 }
@@ -154,11 +155,11 @@ pub struct Extract {
     /// Kept ways, sorted by id, ids distinct.
     pub ways: Vec<Way>,
     /// Node references of all ways, one way after the other.
-    pub refs: Vec<i64>,
+    pub refs: Vec<NodeId>,
     /// Positions of those nodes.
     pub nodes: NodeTable,
     /// Tagged nodes on kept ways that narrow or bar the road: sorted by node id.
-    pub points: Vec<(i64, PointFacts)>,
+    pub points: Vec<(NodeId, PointFacts)>,
     /// Mapped surfaces of roads and islands on them, sorted by way id, ids distinct.
     pub areas: Vec<RoadArea>,
     /// Turn restrictions for heavy goods vehicles, sorted by relation id.

@@ -8,7 +8,9 @@ mod backdrop;
 pub mod changes;
 mod extract;
 pub mod facts;
+mod node_id;
 pub mod pbf;
 
 pub use backdrop::{Backdrop, BackdropShape};
 pub use extract::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringId, StringPool, Via, Way, rounded};
+pub use node_id::NodeId;

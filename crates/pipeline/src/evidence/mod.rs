@@ -17,6 +17,7 @@ use super::summary::Summary;
 use crate::account::AccountRow;
 use crate::certify::Touched;
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::store::{Database, Register, Renewal, Run, StoreError};
@@ -238,7 +239,7 @@ pub(super) fn account(entries: &[Entry]) -> Vec<AccountRow> {
 fn mapped_corners(network: &Network, turns: &[TurnFacts], added: &[Entry]) -> Vec<Conflict> {
     let corners = added.iter().filter(|entry| entry.row.quantity == Quantity::KerbRadius);
     let conflict = |entry: &Entry| {
-        let mapped_at = |node: i64| {
+        let mapped_at = |node: NodeId| {
             let at = |edge: EdgeNo| network.edges.get(edge.index());
             let there = turns.iter().filter(|turn| {
                 let via = at(turn.movement.from).map(|edge| edge.to_node);

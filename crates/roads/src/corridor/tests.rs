@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use super::profile::{Across, Gap, LEAST_WIDTH_M, Stretch, profile};
 use super::*;
 use crate::network::{Edge, EdgeNo, Narrowing, Network, Road, Stroke};
-use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
+use crate::osm::{LonLat, NodeId};
 
 const LANE: (f32, f32) = (0.0, -3.5);
 const CENTRED: (f32, f32) = (1.75, -1.75);
@@ -56,8 +56,8 @@ pub(crate) fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> 
         n.edges.push(Edge {
             id: i as i64 + 1,
             road: i as u32,
-            from_node: i as i64,
-            to_node: i as i64 + 1,
+            from_node: NodeId::new(i as i64),
+            to_node: NodeId::new(i as i64 + 1),
             direction: Direction::Forward,
             shape: start..n.shapes.len() as u32,
             narrowings: 0..0,

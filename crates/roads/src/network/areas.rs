@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::extent::Extent;
 use super::{Network, NetworkAccount};
 use crate::osm::facts::AreaKind;
-use crate::osm::{LonLat, NodeTable, RoadArea};
+use crate::osm::{LonLat, NodeId, NodeTable, RoadArea};
 
 /// Islands farther from every road than this are left out, metres. Roads and measured surfaces reach less far from their lines.
 const NEAR_ROAD_M: f64 = 100.0;
@@ -36,7 +36,7 @@ pub struct Areas {
     /// Sorted by way id.
     all: Vec<Area>,
     /// By node of the network: indices into `all` of the surfaces around it.
-    around: FxHashMap<i64, Vec<u32>>,
+    around: FxHashMap<NodeId, Vec<u32>>,
     /// Islands from south to north without tall ones: their extents, and indices into `all`.
     islands: Vec<(Extent, u32)>,
     /// The greatest extent of one of `islands` from south to north, 1e-7 degree.
@@ -52,10 +52,10 @@ impl Areas {
         if all.is_empty() {
             return Self::default();
         }
-        let mut nodes: Vec<(i32, i32, i64)> = ends(network).map(|(id, at)| (at.lat_e7, at.lon_e7, id)).collect();
+        let mut nodes: Vec<(i32, i32, NodeId)> = ends(network).map(|(id, at)| (at.lat_e7, at.lon_e7, id)).collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let (mut around, mut islands) = (FxHashMap::<i64, Vec<u32>>::default(), Vec::new());
+        let (mut around, mut islands) = (FxHashMap::<NodeId, Vec<u32>>::default(), Vec::new());
         for (index, area) in (0..).zip(&all) {
             let Some(extent) = Extent::of(area.ring.iter().copied()) else { continue };
             if area.kind == AreaKind::Island {
@@ -83,7 +83,7 @@ impl Areas {
     }
 
     /// The surfaces around a node.
-    pub fn around(&self, node: i64) -> impl Iterator<Item = &Area> {
+    pub fn around(&self, node: NodeId) -> impl Iterator<Item = &Area> {
         self.around.get(&node).into_iter().flatten().filter_map(|&index| self.all.get(index as usize))
     }
 
@@ -179,7 +179,7 @@ fn hull(places: &[LonLat]) -> Option<Vec<LonLat>> {
 }
 
 /// Node and position of both ends of every edge.
-fn ends(network: &Network) -> impl Iterator<Item = (i64, LonLat)> + '_ {
+fn ends(network: &Network) -> impl Iterator<Item = (NodeId, LonLat)> + '_ {
     network.edges.iter().flat_map(|edge| {
         let mut positions = network.positions(edge);
         let (first, last) = (positions.next(), positions.next_back());
@@ -313,9 +313,11 @@ mod tests {
         let whole = hull(&ring).unwrap();
         assert!(whole.len() > MOST_CORNERS && whole.first() == whole.last());
         assert!(contains(&whole, at(0, 99_000_000)) && !contains(&whole, at(72_000_000, 72_000_000)));
-        let nodes =
-            NodeTable { ids: (0..1_000_000).collect(), places: ring[..1_000_000].iter().copied().map(Some).collect() };
-        let refs: Vec<i64> = (0..1_000_000).chain([0]).collect();
+        let nodes = NodeTable {
+            ids: (0..1_000_000).map(NodeId::new).collect(),
+            places: ring[..1_000_000].iter().copied().map(Some).collect(),
+        };
+        let refs: Vec<NodeId> = (0..1_000_000).chain([0]).map(NodeId::new).collect();
         let area = |id, kind| RoadArea { id, kind, refs: refs.clone() };
         let road = AreaKind::Road(crate::osm::facts::RoadClass::Primary);
         let mut account = NetworkAccount::default();

@@ -5,7 +5,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::areas::Area;
 use super::geometry::EARTH_RADIUS_M;
 use super::{Edge, EdgeNo, Network, Road, Stroke};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// Nodes within this distance of an area that changed are named, metres.
 const NEAR_M: f64 = 150.0;
@@ -16,7 +16,7 @@ pub struct Differences {
     /// Ids of edges of the newer network that the older one does not have in the same form, or that are on another stroke there.
     pub edges: Vec<i64>,
     /// Ids of nodes at which an edge is gone, or a surface, an island or a kerb may differ.
-    pub nodes: Vec<i64>,
+    pub nodes: Vec<NodeId>,
     /// By edge of the newer network: the same edge in the older one.
     pub older: Vec<Option<EdgeNo>>,
 }
@@ -36,20 +36,21 @@ impl Differences {
         let mut edges: FxHashSet<i64> =
             new.edges.iter().zip(&older).filter(|(_, older)| older.is_none()).map(|(edge, _)| edge.id).collect();
         other_strokes(old, new, &mut edges);
-        let mut nodes: FxHashSet<i64> = FxHashSet::default();
+        let mut nodes: FxHashSet<NodeId> = FxHashSet::default();
         let there: FxHashSet<EdgeNo> = older.iter().flatten().copied().collect();
         for (_, gone) in old.numbered_edges().filter(|(index, _)| !there.contains(index)) {
             nodes.extend([gone.from_node, gone.to_node]);
         }
         near_changed_areas(old, new, &mut nodes);
         nodes.extend(old.site.junctions().chain(new.site.junctions()));
-        let sorted = |set: FxHashSet<i64>| {
-            let mut all: Vec<i64> = set.into_iter().collect();
-            all.sort_unstable();
-            all
-        };
         Self { edges: sorted(edges), nodes: sorted(nodes), older }
     }
+}
+
+fn sorted<T: Ord>(set: FxHashSet<T>) -> Vec<T> {
+    let mut all: Vec<T> = set.into_iter().collect();
+    all.sort_unstable();
+    all
 }
 
 /// Whether two edges of one id have the same line, strips, limits and road.
@@ -114,7 +115,7 @@ fn other_strokes(old: &Network, new: &Network, edges: &mut FxHashSet<i64>) {
 }
 
 /// Adds the nodes near areas that only one network has in their form.
-fn near_changed_areas(old: &Network, new: &Network, nodes: &mut FxHashSet<i64>) {
+fn near_changed_areas(old: &Network, new: &Network, nodes: &mut FxHashSet<NodeId>) {
     let of = |network: &Network| -> FxHashMap<i64, Area> {
         network.areas.all().iter().map(|area| (area.way_id, area.clone())).collect()
     };

@@ -5,6 +5,7 @@
 //! turn, whose area has the other node. U-turns are left out; they remain two turns.
 
 use super::{EdgeNo, MovementKind, Network, reverse};
+use crate::osm::NodeId;
 
 /// Greatest length of the edges inside, together, metres.
 const INSIDE_M: f64 = 30.0;
@@ -58,7 +59,7 @@ impl Network {
     /// The length of an edge that may lie inside a complex, metres.
     fn inside(&self, edge: EdgeNo, most_m: f64) -> Option<f64> {
         let e = &self.edges[edge.index()];
-        let few = |node: i64| (1..=MOST_ENDS).contains(&self.crossings.at(node).len());
+        let few = |node: NodeId| (1..=MOST_ENDS).contains(&self.crossings.at(node).len());
         if self.road(e).roundabout || e.from_node == e.to_node || !few(e.from_node) || !few(e.to_node) {
             return None;
         }

@@ -3,12 +3,13 @@
 use rustc_hash::FxHashMap;
 
 use super::{EdgeNo, Network};
+use crate::osm::NodeId;
 
 /// Edges by node, in order of their indices.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Crossings {
     /// By node: its range in `edges`.
-    ranges: FxHashMap<i64, (u32, u32)>,
+    ranges: FxHashMap<NodeId, (u32, u32)>,
     edges: Vec<EdgeNo>,
 }
 
@@ -17,7 +18,7 @@ impl Crossings {
     #[must_use]
     pub fn find(network: &Network) -> Self {
         let ends = |(index, edge): (EdgeNo, &super::Edge)| [(edge.from_node, index), (edge.to_node, index)];
-        let mut all: Vec<(i64, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
+        let mut all: Vec<(NodeId, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
         all.sort_unstable();
         all.dedup();
         let mut found = Self::default();
@@ -34,7 +35,7 @@ impl Crossings {
 
     /// The edges that begin or end at a node. Empty if there are at most two.
     #[must_use]
-    pub fn at(&self, node: i64) -> &[EdgeNo] {
+    pub fn at(&self, node: NodeId) -> &[EdgeNo] {
         let range = self.ranges.get(&node).map_or(0..0, |&(first, end)| first as usize..end as usize);
         self.edges.get(range).unwrap_or_default()
     }

@@ -7,16 +7,17 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Edge, EdgeNo};
+use crate::osm::NodeId;
 use crate::osm::facts::Direction;
 
 /// The id of the edge of way `way_id` between these nodes in this direction. `ordinal` counts earlier edges along the
 /// way with the same way, nodes and direction.
-pub(super) fn edge_id(way_id: i64, from_node: i64, to_node: i64, direction: Direction, ordinal: u32) -> i64 {
+pub(super) fn edge_id(way_id: i64, from_node: NodeId, to_node: NodeId, direction: Direction, ordinal: u32) -> i64 {
     let direction = match direction {
         Direction::Forward => 0,
         Direction::Backward => 1,
     };
-    let words = [way_id as u64, from_node as u64, to_node as u64, direction << 32 | u64::from(ordinal)];
+    let words = [way_id as u64, from_node.get() as u64, to_node.get() as u64, direction << 32 | u64::from(ordinal)];
     positive(words.into_iter().fold(0, |hash, word| scramble(hash ^ word)))
 }
 
@@ -91,8 +92,8 @@ mod tests {
         Edge {
             id,
             road: 0,
-            from_node: 1,
-            to_node: 2,
+            from_node: NodeId::new(1),
+            to_node: NodeId::new(2),
             direction: Direction::Forward,
             shape: 0..2,
             narrowings: 0..0,
@@ -104,9 +105,9 @@ mod tests {
 
     #[test]
     fn ids_are_a_promise_across_versions() {
-        assert_eq!(edge_id(4_242, 17, 23, Direction::Forward, 0), PINNED[0]);
-        assert_eq!(edge_id(4_242, 23, 17, Direction::Backward, 0), PINNED[1]);
-        assert_eq!(edge_id(4_242, 17, 23, Direction::Forward, 1), PINNED[2]);
+        assert_eq!(edge_id(4_242, NodeId::new(17), NodeId::new(23), Direction::Forward, 0), PINNED[0]);
+        assert_eq!(edge_id(4_242, NodeId::new(23), NodeId::new(17), Direction::Backward, 0), PINNED[1]);
+        assert_eq!(edge_id(4_242, NodeId::new(17), NodeId::new(23), Direction::Forward, 1), PINNED[2]);
     }
 
     /// Computed by a Python implementation of the same formula.
@@ -114,12 +115,12 @@ mod tests {
 
     #[test]
     fn each_part_of_the_identity_counts() {
-        let base = edge_id(1, 2, 3, Direction::Forward, 0);
+        let base = edge_id(1, NodeId::new(2), NodeId::new(3), Direction::Forward, 0);
         for other in [
-            edge_id(2, 2, 3, Direction::Forward, 0),
-            edge_id(1, 3, 2, Direction::Forward, 0),
-            edge_id(1, 2, 3, Direction::Backward, 0),
-            edge_id(1, 2, 3, Direction::Forward, 1),
+            edge_id(2, NodeId::new(2), NodeId::new(3), Direction::Forward, 0),
+            edge_id(1, NodeId::new(3), NodeId::new(2), Direction::Forward, 0),
+            edge_id(1, NodeId::new(2), NodeId::new(3), Direction::Backward, 0),
+            edge_id(1, NodeId::new(2), NodeId::new(3), Direction::Forward, 1),
         ] {
             assert!(other > 0);
             assert_ne!(base, other);

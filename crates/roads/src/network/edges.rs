@@ -14,7 +14,7 @@ use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
 use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Jurisdiction, Legal, Oneway, WayFacts};
-use crate::osm::{LonLat, NodeTable, Way};
+use crate::osm::{LonLat, NodeId, NodeTable, Way};
 
 /// Ways per task, and tasks per batch. A batch's edges wait in memory beside the network, so a batch is small compared
 /// with a large extract. A task is long compared with the cost of starting it.
@@ -135,7 +135,7 @@ where
             }
         }
         let narrowings = narrowings..built.network.narrowings.len() as u32;
-        let node = |v: Option<&u32>| v.map_or(0, |&v| self.nodes.ids[v as usize]);
+        let node = |v: Option<&u32>| v.map_or(NodeId::new(0), |&v| self.nodes.ids[v as usize]);
         let ends = [node(line.first()), node(line.last())];
         for direction in [Direction::Forward, Direction::Backward] {
             built.account.directions += 1;

@@ -59,7 +59,7 @@ pub use through::{destination_tag, destination_words, through};
 pub use title::Ends;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
-use crate::osm::{LonLat, StringId, StringPool};
+use crate::osm::{LonLat, NodeId, StringId, StringPool};
 
 /// Values of a way that all its edges share.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -102,9 +102,9 @@ pub struct Edge {
     /// Index into [`Network::roads`].
     pub road: u32,
     /// First node in direction of travel.
-    pub from_node: i64,
+    pub from_node: NodeId,
     /// Last node in direction of travel.
-    pub to_node: i64,
+    pub to_node: NodeId,
     /// Direction relative to the way.
     pub direction: Direction,
     /// Positions in [`Network::shapes`], in *way* order for both directions; at least two.

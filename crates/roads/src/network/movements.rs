@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::{EdgeNo, Network, Passage, pairing, reverse};
+use crate::osm::NodeId;
 
 /// Kind of a movement at a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -100,7 +101,7 @@ impl Network {
     /// All movements. Time and memory grow with their number (about 3 per edge).
     #[must_use]
     pub fn movements(&self) -> Movements {
-        let mut ends: Vec<(i64, bool, EdgeNo)> = Vec::with_capacity(self.edges.len() * 2);
+        let mut ends: Vec<(NodeId, bool, EdgeNo)> = Vec::with_capacity(self.edges.len() * 2);
         for (edge, e) in self.numbered_edges() {
             ends.push((e.to_node, false, edge));
             ends.push((e.from_node, true, edge));

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::restrictions::Leaving;
 use super::{EdgeNo, Network, reverse};
+use crate::osm::NodeId;
 
 /// How far a way's road is followed, metres and edges. No split part of a way at a junction is as long.
 const REACH_M: f64 = 500.0;
@@ -18,7 +19,7 @@ pub(super) struct Onward<'n> {
 
 impl Onward<'_> {
     /// The edges that arrive at a node on the road that goes on from a way's edges.
-    pub(super) fn arriving_at(&self, edges: &Range<EdgeNo>, node: i64) -> Vec<EdgeNo> {
+    pub(super) fn arriving_at(&self, edges: &Range<EdgeNo>, node: NodeId) -> Vec<EdgeNo> {
         let mut found = Vec::new();
         for edge in EdgeNo::each(edges.clone()) {
             self.walk(edge, &mut |next| {
@@ -33,7 +34,7 @@ impl Onward<'_> {
     }
 
     /// The edges that leave a node on a road that goes on into a way's edges.
-    pub(super) fn leaving_node(&self, node: i64, edges: &Range<EdgeNo>) -> Vec<EdgeNo> {
+    pub(super) fn leaving_node(&self, node: NodeId, edges: &Range<EdgeNo>) -> Vec<EdgeNo> {
         let leads_there = |&first: &EdgeNo| {
             let mut there = false;
             self.walk(first, &mut |next| {

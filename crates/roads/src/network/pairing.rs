@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use super::corners::{REACH_M, is_sharp};
 use super::geometry::Geometry;
 use super::{Edge, EdgeNo, Network, Road, StrokeOptions, reverse};
-use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway};
+use crate::osm::{LonLat, NodeId};
 
 /// No edge.
 pub(super) const NONE: EdgeNo = EdgeNo::MAX;
@@ -72,7 +72,7 @@ impl Pairing {
 /// One end of a directed edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct End {
-    node: i64,
+    node: NodeId,
     leaves: bool,
     edge: EdgeNo,
 }

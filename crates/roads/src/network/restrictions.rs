@@ -16,7 +16,7 @@ use super::sides::{Meant, meant};
 use super::vertices::Vertices;
 use super::{EdgeNo, Network, Restriction, reverse};
 use crate::osm::facts::RestrictionKind;
-use crate::osm::{self, NodeTable, Via};
+use crate::osm::{self, NodeId, NodeTable, Via};
 
 /// Most sequences of one restriction, and most edges of one way over which a path is followed. No hand-drawn
 /// restriction comes near, and a crafted file cannot cause more work.
@@ -116,7 +116,7 @@ impl Leaving {
     }
 
     /// The edges that leave a node, in edge order.
-    pub(super) fn at(&self, network: &Network, node: i64) -> &[EdgeNo] {
+    pub(super) fn at(&self, network: &Network, node: NodeId) -> &[EdgeNo] {
         let from = |edge: &EdgeNo| network.edges[edge.index()].from_node;
         let start = self.0.partition_point(|edge| from(edge) < node);
         let end = start + self.0[start..].partition_point(|edge| from(edge) == node);
@@ -164,10 +164,10 @@ impl Resolver<'_> {
         &self,
         kind: RestrictionKind,
         restriction: &osm::Restriction,
-        via: &[i64],
+        via: &[NodeId],
         reading: &mut Reading,
     ) -> Option<Vec<Vec<EdgeNo>>> {
-        let nodes: Vec<i64> = match via {
+        let nodes: Vec<NodeId> = match via {
             [] => self.meetings(restriction),
             via => via.iter().filter_map(|&id| self.vertices.node(self.nodes, id)).collect(),
         };
@@ -190,12 +190,12 @@ impl Resolver<'_> {
     }
 
     /// The nodes at which a way `from` meets a way `to`.
-    fn meetings(&self, restriction: &osm::Restriction) -> Vec<i64> {
+    fn meetings(&self, restriction: &osm::Restriction) -> Vec<NodeId> {
         let edges =
             |ways: &[i64]| ways.iter().flat_map(|&way| EdgeNo::each(self.edges_of(way))).collect::<Vec<EdgeNo>>();
         let edge = |edge: &EdgeNo| &self.network.edges[edge.index()];
-        let starts: Vec<i64> = edges(&restriction.to).iter().map(|to| edge(to).from_node).collect();
-        let mut nodes: Vec<i64> = edges(&restriction.from).iter().map(|from| edge(from).to_node).collect();
+        let starts: Vec<NodeId> = edges(&restriction.to).iter().map(|to| edge(to).from_node).collect();
+        let mut nodes: Vec<NodeId> = edges(&restriction.from).iter().map(|from| edge(from).to_node).collect();
         nodes.retain(|node| starts.contains(node));
         nodes.sort_unstable();
         nodes.dedup();
@@ -204,15 +204,16 @@ impl Resolver<'_> {
 
     /// By node: for each way, its edges that end there, or begin there if it is a `to`. Without ways, all edges there count as
     /// those of one way. A way that is at none of the nodes stands for the road that goes on to it.
-    fn at_each(&self, nodes: &[i64], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<EdgeNo>>> {
+    fn at_each(&self, nodes: &[NodeId], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<EdgeNo>>> {
         let leave = member == Member::To;
         if ways.is_empty() {
-            let all = |&node: &i64| vec![if leave { self.leaving_at(node) } else { self.arriving_at(node) }.to_vec()];
+            let all =
+                |&node: &NodeId| vec![if leave { self.leaving_at(node) } else { self.arriving_at(node) }.to_vec()];
             return nodes.iter().map(all).collect();
         }
         let mut by_node = vec![Vec::new(); nodes.len()];
         for &way in ways {
-            let at = |node: i64| -> Vec<EdgeNo> {
+            let at = |node: NodeId| -> Vec<EdgeNo> {
                 let there = |&edge: &EdgeNo| {
                     let edge = &self.network.edges[edge.index()];
                     (if leave { edge.from_node } else { edge.to_node }) == node
@@ -227,7 +228,7 @@ impl Resolver<'_> {
                     by_node.iter_mut().for_each(|all| all.push(Vec::new()));
                     continue;
                 }
-                let found = |&node: &i64| {
+                let found = |&node: &NodeId| {
                     if leave { onward.leaving_node(node, &edges) } else { onward.arriving_at(&edges, node) }
                 };
                 own = nodes.iter().map(found).collect();
@@ -260,7 +261,7 @@ impl Resolver<'_> {
     fn only(
         &self,
         kind: RestrictionKind,
-        node: i64,
+        node: NodeId,
         from: &[Vec<EdgeNo>],
         to: &[Vec<EdgeNo>],
         reading: &mut Reading,
@@ -407,11 +408,11 @@ impl Resolver<'_> {
         self.leaving_at(e.to_node).iter().find(goes_on).copied()
     }
 
-    fn leaving_at(&self, node: i64) -> &[EdgeNo] {
+    fn leaving_at(&self, node: NodeId) -> &[EdgeNo] {
         self.leaving.at(self.network, node)
     }
 
-    fn arriving_at(&self, node: i64) -> &[EdgeNo] {
+    fn arriving_at(&self, node: NodeId) -> &[EdgeNo] {
         let to = |edge: &EdgeNo| self.network.edges[edge.index()].to_node;
         let all = self.arriving.get_or_init(|| {
             let mut all: Vec<EdgeNo> = EdgeNo::first(self.network.edges.len()).collect();

@@ -7,6 +7,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{EdgeNo, Network, Stroke};
+use crate::osm::NodeId;
 
 /// If every arc is longer than this (metres), entering and leaving are two turns. Vehicles have at most 60 m, and
 /// entering and leaving take about 20 m of an arc each.
@@ -51,13 +52,13 @@ impl Network {
     }
 
     /// The ring of a stroke and its nodes, if the stroke is a roundabout with an arc short enough for a vehicle.
-    fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<i64>)> {
+    fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<NodeId>)> {
         let arcs = self.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize)?;
         let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc.index()));
         if !edges().all(|edge| self.road(edge).roundabout) {
             return None;
         }
-        let mut nodes: Vec<i64> = edges().map(|edge| edge.from_node).collect();
+        let mut nodes: Vec<NodeId> = edges().map(|edge| edge.from_node).collect();
         if !stroke.closed {
             nodes.extend(edges().next_back().map(|edge| edge.to_node));
         }

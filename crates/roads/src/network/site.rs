@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use super::{Edge, Network};
-use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Legal};
+use crate::osm::{LonLat, NodeId};
 
 /// Two pieces of road that form a corner, in order. A piece is known by its road and by where its shape begins.
 pub type Pieces = [(u32, u32); 2];
@@ -28,9 +28,9 @@ pub struct Site {
     /// By `edge_id`.
     sections: FxHashMap<i64, CrossSection>,
     /// By node, and by corner. Metres.
-    kerbs: FxHashMap<(i64, Option<Pieces>), f64>,
+    kerbs: FxHashMap<(NodeId, Option<Pieces>), f64>,
     /// Paved surfaces by the node of their junction: closed rings.
-    surfaces: FxHashMap<i64, Vec<Vec<LonLat>>>,
+    surfaces: FxHashMap<NodeId, Vec<Vec<LonLat>>>,
     /// By `edge_id`.
     limits: FxHashMap<i64, SiteLimits>,
 }
@@ -66,22 +66,22 @@ impl Site {
     }
 
     /// Gives all corners at a node a kerb radius, metres, or only the corner between two edges.
-    pub fn set_kerb(&mut self, node: i64, between: Option<[&Edge; 2]>, radius_m: f64) {
+    pub fn set_kerb(&mut self, node: NodeId, between: Option<[&Edge; 2]>, radius_m: f64) {
         self.kerbs.insert((node, between.map(pieces)), radius_m);
     }
 
     /// Adds a paved surface without kerbs and islands to the junction at a node: a closed ring that does not cross itself.
-    pub fn add_surface(&mut self, node: i64, ring: Vec<LonLat>) {
+    pub fn add_surface(&mut self, node: NodeId, ring: Vec<LonLat>) {
         self.surfaces.entry(node).or_default().push(ring);
     }
 
     /// The nodes of junctions that have a kerb or a surface of their own.
-    pub fn junctions(&self) -> impl Iterator<Item = i64> {
+    pub fn junctions(&self) -> impl Iterator<Item = NodeId> {
         self.kerbs.keys().map(|corner| corner.0).chain(self.surfaces.keys().copied())
     }
 
     /// The paved surfaces of the junction at a node.
-    pub fn surfaces(&self, node: i64) -> &[Vec<LonLat>] {
+    pub fn surfaces(&self, node: NodeId) -> &[Vec<LonLat>] {
         self.surfaces.get(&node).map_or(&[], Vec::as_slice)
     }
 }
@@ -96,16 +96,16 @@ pub fn pieces(edges: [&Edge; 2]) -> Pieces {
 impl Site {
     /// Where two sites differ: ids of edges with other widths or limits, and ids of nodes with other kerbs or surfaces; both sorted.
     #[must_use]
-    pub fn differences(&self, other: &Self) -> (Vec<i64>, Vec<i64>) {
+    pub fn differences(&self, other: &Self) -> (Vec<i64>, Vec<NodeId>) {
         let differ = |edge: &&i64| self.sections.get(edge) != other.sections.get(edge);
         let mut edges: BTreeSet<i64> =
             self.sections.keys().chain(other.sections.keys()).filter(differ).copied().collect();
         let differ = |edge: &&i64| self.limits.get(edge) != other.limits.get(edge);
         edges.extend(self.limits.keys().chain(other.limits.keys()).filter(differ));
-        let differ = |corner: &&(i64, Option<Pieces>)| self.kerbs.get(corner) != other.kerbs.get(corner);
+        let differ = |corner: &&(NodeId, Option<Pieces>)| self.kerbs.get(corner) != other.kerbs.get(corner);
         let corners = self.kerbs.keys().chain(other.kerbs.keys()).filter(differ);
-        let mut nodes: BTreeSet<i64> = corners.map(|corner| corner.0).collect();
-        let differ = |node: &&i64| self.surfaces.get(node) != other.surfaces.get(node);
+        let mut nodes: BTreeSet<NodeId> = corners.map(|corner| corner.0).collect();
+        let differ = |node: &&NodeId| self.surfaces.get(node) != other.surfaces.get(node);
         nodes.extend(self.surfaces.keys().chain(other.surfaces.keys()).filter(differ));
         (edges.into_iter().collect(), nodes.into_iter().collect())
     }
@@ -133,7 +133,7 @@ impl Network {
 
     /// The kerb radius that the site has for the corner of two edges at a node, metres. `None` if the site says nothing.
     #[must_use]
-    pub fn site_kerb_m(&self, node: i64, between: [&Edge; 2]) -> Option<f64> {
+    pub fn site_kerb_m(&self, node: NodeId, between: [&Edge; 2]) -> Option<f64> {
         if self.site.kerbs.is_empty() {
             return None;
         }

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use rustc_hash::FxHashSet;
 
 use super::{Edge, EdgeNo, Network, Road};
+use crate::osm::NodeId;
 use crate::osm::facts::{Oneway, RoadClass};
 use crate::words::Named as _;
 
@@ -20,23 +21,23 @@ const MOST_EDGES: usize = 200;
 
 /// The edges at each end of an unnamed road. They are found when a title is first asked for.
 #[derive(Debug, Clone, Default)]
-pub struct Ends(OnceLock<Vec<(i64, EdgeNo)>>);
+pub struct Ends(OnceLock<Vec<(NodeId, EdgeNo)>>);
 
 impl Ends {
     /// The edges that begin or end at a node.
-    fn at<'n>(&'n self, network: &Network, node: i64) -> impl Iterator<Item = EdgeNo> + 'n {
+    fn at<'n>(&'n self, network: &Network, node: NodeId) -> impl Iterator<Item = EdgeNo> + 'n {
         let all = self.0.get_or_init(|| Self::find(network));
         let first = all.partition_point(|end| end.0 < node);
         all.iter().skip(first).take_while(move |end| end.0 == node).map(|end| end.1)
     }
 
-    fn find(network: &Network) -> Vec<(i64, EdgeNo)> {
+    fn find(network: &Network) -> Vec<(NodeId, EdgeNo)> {
         let unnamed = network.edges.iter().filter(|edge| named(network.road(edge)).is_empty());
-        let mut nodes: Vec<i64> = unnamed.flat_map(|edge| [edge.from_node, edge.to_node]).collect();
+        let mut nodes: Vec<NodeId> = unnamed.flat_map(|edge| [edge.from_node, edge.to_node]).collect();
         nodes.sort_unstable();
         nodes.dedup();
         let ends = |(index, edge): (EdgeNo, &Edge)| [(edge.from_node, index), (edge.to_node, index)];
-        let mut all: Vec<(i64, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
+        let mut all: Vec<(NodeId, EdgeNo)> = network.numbered_edges().flat_map(ends).collect();
         all.retain(|end| nodes.binary_search(&end.0).is_ok());
         all.sort_unstable();
         all
@@ -143,6 +144,7 @@ fn kind(road: &Road) -> String {
 mod tests {
     use crate::corridor::tests::network;
     use crate::network::Edge;
+    use crate::osm::NodeId;
     use crate::osm::facts::CrossSection;
 
     /// A list of the edges seen would be searched for each of them: 10^11 comparisons.
@@ -154,7 +156,13 @@ mod tests {
         for k in 0..300_000 {
             let start = n.shapes.len() as u32;
             n.shapes.extend(&ends);
-            n.edges.push(Edge { id: 10 + k, from_node: 10 + k, to_node: 0, shape: start..start + 2, ..one.clone() });
+            n.edges.push(Edge {
+                id: 10 + k,
+                from_node: NodeId::new(10 + k),
+                to_node: NodeId::new(0),
+                shape: start..start + 2,
+                ..one.clone()
+            });
         }
         for _ in 0..3 {
             assert_eq!(n.title(&one), "primary road (way 0)");

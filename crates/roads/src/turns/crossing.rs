@@ -13,6 +13,7 @@ use super::path::wrapped;
 use super::surface::surface;
 use crate::corridor::Frame;
 use crate::network::{Edge, EdgeNo, Network, Road};
+use crate::osm::NodeId;
 
 /// Length of another road's mouth that bodies may overhang, from the node, metres. Parts that two roads share end there,
 /// too.
@@ -63,7 +64,7 @@ pub(super) fn parts(
 /// them.
 pub(super) fn whole(
     network: &Network,
-    node: i64,
+    node: NodeId,
     frame: Frame,
     params: &TurnParams,
     mapped: Option<&MultiPolygon>,
@@ -75,7 +76,7 @@ pub(super) fn whole(
 /// The mouths of roads that are not the turn's own, what they share, the outsides of bends, and the corners.
 fn parts_of(
     mouths: &[Mouth<'_>],
-    node: i64,
+    node: NodeId,
     params: &TurnParams,
     mapped: Option<&MultiPolygon>,
     chord_rad: f64,
@@ -128,7 +129,7 @@ pub(super) fn carriageways(network: &Network, edges: &[EdgeNo], frame: Frame, pa
 }
 
 /// The mouths around a node, counter-clockwise.
-fn mouths<'a>(network: &'a Network, node: i64, own: &[EdgeNo], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
+fn mouths<'a>(network: &'a Network, node: NodeId, own: &[EdgeNo], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
     let own: Vec<&Edge> = own.iter().filter_map(|&edge| network.edges.get(edge.index())).collect();
     let mut pieces: Vec<&Edge> = Vec::new();
     let edges = network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge.index()));
@@ -150,7 +151,13 @@ fn mouths<'a>(network: &'a Network, node: i64, own: &[EdgeNo], frame: Frame, par
 }
 
 /// The mouth of an edge at a node. `None` if the road has no width there that counts.
-fn mouth<'a>(network: &'a Network, edge: &'a Edge, node: i64, frame: Frame, params: &TurnParams) -> Option<Mouth<'a>> {
+fn mouth<'a>(
+    network: &'a Network,
+    edge: &'a Edge,
+    node: NodeId,
+    frame: Frame,
+    params: &TurnParams,
+) -> Option<Mouth<'a>> {
     let road = network.road(edge);
     let outward = edge.from_node == node;
     let section = network.section(edge);
@@ -223,7 +230,7 @@ fn common(a: Option<Polygon>, b: Option<Polygon>) -> Vec<Polygon> {
 
 /// The corner between a mouth and the next one counter-clockwise.
 fn corner(
-    node: i64,
+    node: NodeId,
     [a, b]: [&Mouth<'_>; 2],
     params: &TurnParams,
     mapped: Option<&MultiPolygon>,

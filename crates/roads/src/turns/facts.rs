@@ -8,7 +8,7 @@ use rustc_hash::FxHashSet;
 use super::area::CORNERS_RAD;
 use super::{Kerbs, path, surface};
 use crate::network::{Edge, EdgeNo, Movement, MovementKind, Network, Passage, offset_m};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// Extent of a turn's line along both edges, metres. The turn's angle is measured over the same length.
 const LINE_M: f64 = 12.0;
@@ -89,7 +89,7 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             let ends = [through.first(), through.last()];
             let between = ends.map(|edge| edge.and_then(|&edge| network.edges.get(edge.index())));
             // The radius of a corner, and whether it is surveyed; none if the corner is mapped.
-            let corner = |node: i64, a: &Edge, b: &Edge| {
+            let corner = |node: NodeId, a: &Edge, b: &Edge| {
                 let roads = [network.road(a), network.road(b)];
                 let radius = || (kerbs.at(network, node, [a, b]), network.site_kerb_m(node, [a, b]).is_some());
                 (!surface::is_mapped(network, node, roads)).then(radius)

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{KerbSource, TurnFacts, TurnParams, crossing, islands, surface};
 use crate::corridor::Frame;
 use crate::network::{Edge, EdgeNo, Network, Road};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 
 /// Greatest distance of the outline from the true one, metres.
 const TOLERANCE_M: f64 = 0.05;
@@ -28,7 +28,7 @@ pub type Ring = Vec<LonLat>;
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct JunctionArea {
     /// The node in OpenStreetMap.
-    pub node: i64,
+    pub node: NodeId,
     /// Number of roads that meet here and have a width.
     pub roads: usize,
     /// Origin of the corners: mapped if there is a mapped surface, surveyed if any corner is. `None` if there is no corner.
@@ -39,13 +39,13 @@ pub struct JunctionArea {
 
 /// The nodes at which turns begin or end, sorted.
 #[must_use]
-pub fn junction_nodes(network: &Network, turns: &[TurnFacts]) -> Vec<i64> {
+pub fn junction_nodes(network: &Network, turns: &[TurnFacts]) -> Vec<NodeId> {
     junction_places(network, turns).into_iter().map(|(node, _)| node).collect()
 }
 
 /// The nodes at which turns begin or end, with their positions, sorted by node.
 #[must_use]
-pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonLat)> {
+pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(NodeId, LonLat)> {
     let edge = |index: EdgeNo| network.edges.get(index.index());
     let ends = |turn: &TurnFacts| {
         let first =
@@ -53,7 +53,7 @@ pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonL
         let last = edge(turn.movement.to).and_then(|edge| Some((edge.from_node, network.positions(edge).next()?)));
         [first, last]
     };
-    let mut nodes: Vec<(i64, LonLat)> = turns.iter().flat_map(ends).flatten().collect();
+    let mut nodes: Vec<(NodeId, LonLat)> = turns.iter().flat_map(ends).flatten().collect();
     nodes.sort_unstable();
     nodes.dedup_by_key(|(node, _)| *node);
     nodes
@@ -61,13 +61,13 @@ pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonL
 
 /// The areas of the junctions at some nodes, in the same order.
 #[must_use]
-pub fn junction_areas(network: &Network, nodes: &[i64], params: &TurnParams) -> Vec<JunctionArea> {
+pub fn junction_areas(network: &Network, nodes: &[NodeId], params: &TurnParams) -> Vec<JunctionArea> {
     nodes.par_iter().filter_map(|&node| junction_area(network, node, params)).collect()
 }
 
 /// The area of the junction at a node. `None` if only the two directions of one road meet there, if no road has a width, or if its outline
 /// cannot be drawn on the map.
-fn junction_area(network: &Network, node: i64, params: &TurnParams) -> Option<JunctionArea> {
+fn junction_area(network: &Network, node: NodeId, params: &TurnParams) -> Option<JunctionArea> {
     let edges: Vec<&Edge> =
         network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge.index())).collect();
     let first = edges.first()?;

@@ -5,6 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::network::{Edge, Network, Road};
+use crate::osm::NodeId;
 use crate::osm::facts::RoadClass;
 
 const TABLE: &str = include_str!("../../../../data/kerbs.toml");
@@ -132,7 +133,7 @@ impl Kerbs {
 
     /// The radius at the corner of two edges that meet at a node, metres: as the network's site has it, else assumed.
     #[must_use]
-    pub fn at(&self, network: &Network, node: i64, [a, b]: [&Edge; 2]) -> f64 {
+    pub fn at(&self, network: &Network, node: NodeId, [a, b]: [&Edge; 2]) -> f64 {
         let known = network.site_kerb_m(node, [a, b]);
         known.unwrap_or_else(|| self.radius_m(network.road(a), network.road(b)))
     }

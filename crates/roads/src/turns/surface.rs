@@ -7,16 +7,16 @@ use geo::{MultiPolygon, Polygon, unary_union};
 
 use crate::corridor::Frame;
 use crate::network::{Area, Network, Road};
-use crate::osm::LonLat;
 use crate::osm::facts::AreaKind;
+use crate::osm::{LonLat, NodeId};
 
 /// Whether the corners at a node between two roads are mapped.
-pub(super) fn is_mapped(network: &Network, node: i64, roads: [&Road; 2]) -> bool {
+pub(super) fn is_mapped(network: &Network, node: NodeId, roads: [&Road; 2]) -> bool {
     surfaces(network, node, &roads).next().is_some()
 }
 
 /// The surface around a node between roads, in a metric frame. `None` if it is not mapped.
-pub(super) fn surface(network: &Network, node: i64, roads: &[&Road], frame: Frame) -> Option<MultiPolygon> {
+pub(super) fn surface(network: &Network, node: NodeId, roads: &[&Road], frame: Frame) -> Option<MultiPolygon> {
     let polygon = |area: &Area| {
         let corners = frame.forward(&area.ring).ok()?;
         Some(super::area::polygon(&corners))
@@ -26,12 +26,12 @@ pub(super) fn surface(network: &Network, node: i64, roads: &[&Road], frame: Fram
 }
 
 /// What is paved at a node beside the map, in a metric frame. It counts beside the strips and kerb returns of the roads.
-pub(super) fn beside_the_map(network: &Network, node: i64, frame: Frame) -> Vec<Polygon> {
+pub(super) fn beside_the_map(network: &Network, node: NodeId, frame: Frame) -> Vec<Polygon> {
     let polygon = |ring: &Vec<LonLat>| Some(super::area::polygon(&frame.forward(ring).ok()?));
     network.site.surfaces(node).iter().filter_map(polygon).collect()
 }
 
-fn surfaces<'a>(network: &'a Network, node: i64, roads: &[&Road]) -> impl Iterator<Item = &'a Area> {
+fn surfaces<'a>(network: &'a Network, node: NodeId, roads: &[&Road]) -> impl Iterator<Item = &'a Area> {
     let of_them = move |area: &&Area| roads.iter().any(|road| area.kind == AreaKind::Road(road.class));
     network.areas.around(node).filter(of_them)
 }

@@ -36,6 +36,7 @@ use super::route::Route;
 use super::snap::Snapped;
 use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use crate::osm::facts::Policy;
 
 /// A route that is certified if all conditions hold.
@@ -73,12 +74,12 @@ pub enum ConditionAt {
     /// At the corner between an edge that ends and one that begins at a node.
     Corner {
         /// OSM node id.
-        node: i64,
+        node: NodeId,
         /// The two edges.
         between: [EdgeNo; 2],
     },
     /// Around an OSM node: everything is paved, without kerbs and islands, up to the needed distance from it.
-    Junction(i64),
+    Junction(NodeId),
 }
 
 impl Condition {

@@ -5,6 +5,7 @@ use rustc_hash::FxHashSet;
 use crate::graph::{Access, BARRED};
 use crate::network::{EdgeNo, Movements, Network};
 use crate::obstacles::{self, CENTIMETRE, Refutation};
+use crate::osm::NodeId;
 use crate::permits::{Permit, Permits};
 use crate::roads::Roads;
 use crate::verdict::{UnsafeReason, Verdict};
@@ -43,7 +44,7 @@ fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access
     if network.site.is_empty() {
         return;
     }
-    let nodes: FxHashSet<i64> = network.site.junctions().collect();
+    let nodes: FxHashSet<NodeId> = network.site.junctions().collect();
     let measured: Vec<bool> = network
         .edges
         .iter()

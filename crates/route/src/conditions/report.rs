@@ -7,7 +7,7 @@ use super::{Condition, ConditionAt};
 use crate::assemble::PartKind;
 use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
-use crate::osm::{LonLat, rounded};
+use crate::osm::{LonLat, NodeId, rounded};
 use crate::title::title as title_of;
 use crate::words::Named as _;
 
@@ -185,7 +185,7 @@ impl Condition {
     }
 }
 
-fn node_position(network: &Network, node: i64) -> Option<LonLat> {
+fn node_position(network: &Network, node: NodeId) -> Option<LonLat> {
     let edge = network.crossings.at(node).iter().find_map(|&edge| network.edges.get(edge.index()))?;
     let mut line = network.positions(edge);
     if edge.from_node == node { line.next() } else { line.next_back() }

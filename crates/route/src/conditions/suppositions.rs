@@ -11,8 +11,8 @@ use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
 use crate::network::{self, Edge, EdgeNo, Network};
-use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Policy, WidthSource};
+use crate::osm::{LonLat, NodeId};
 use crate::turns::Kerbs;
 
 /// Less than what a road lacks, as shares of it.
@@ -32,9 +32,9 @@ pub(crate) struct Suppositions {
     /// By edge and strip, metres.
     pub(super) widths_m: BTreeMap<(EdgeNo, Policy), f64>,
     /// By node, edge that ends and edge that begins there, metres.
-    kerbs_m: BTreeMap<(i64, [EdgeNo; 2]), f64>,
+    kerbs_m: BTreeMap<(NodeId, [EdgeNo; 2]), f64>,
     /// By node: the position of the node, and how far around it everything is paved, metres.
-    paved_m: BTreeMap<i64, (LonLat, f64)>,
+    paved_m: BTreeMap<NodeId, (LonLat, f64)>,
 }
 
 impl Suppositions {
@@ -60,25 +60,25 @@ impl Suppositions {
     }
 
     /// Supposes that a corner has at least this radius.
-    pub(crate) fn round(&mut self, node: i64, between: [EdgeNo; 2], radius_m: f64) {
+    pub(crate) fn round(&mut self, node: NodeId, between: [EdgeNo; 2], radius_m: f64) {
         let radius_m = (radius_m * RADII - 1e-6).ceil() / RADII;
         let known_m = self.kerbs_m.entry((node, between)).or_insert(radius_m);
         *known_m = known_m.max(radius_m);
     }
 
     /// Supposes that everything is paved up to this distance from a node.
-    pub(crate) fn pave(&mut self, node: i64, at: LonLat, radius_m: f64) {
+    pub(crate) fn pave(&mut self, node: NodeId, at: LonLat, radius_m: f64) {
         let paved = self.paved_m.entry(node).or_insert((at, radius_m));
         paved.1 = paved.1.max(radius_m);
     }
 
     /// How far around a node everything is supposed to be paved, metres.
-    pub(crate) fn paved_m(&self, node: i64) -> Option<f64> {
+    pub(crate) fn paved_m(&self, node: NodeId) -> Option<f64> {
         self.paved_m.get(&node).map(|paved| paved.1)
     }
 
     /// The radius supposed for a corner, metres.
-    pub(crate) fn radius_m(&self, node: i64, between: [EdgeNo; 2]) -> Option<f64> {
+    pub(crate) fn radius_m(&self, node: NodeId, between: [EdgeNo; 2]) -> Option<f64> {
         self.kerbs_m.get(&(node, between)).copied()
     }
 
@@ -215,7 +215,7 @@ impl Suppositions {
 
     /// Gives both ways round a corner the greater of their radii: there is one kerb.
     pub(crate) fn level_corners(&mut self, network: &Network) {
-        let kerb = |&(node, between): &(i64, [EdgeNo; 2])| {
+        let kerb = |&(node, between): &(NodeId, [EdgeNo; 2])| {
             let [from, to] = between.map(|edge| network.edges.get(edge.index()));
             Some((node, network::pieces([from?, to?])))
         };

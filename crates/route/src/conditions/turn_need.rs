@@ -7,8 +7,8 @@ use crate::certify::{KERBS_M, best_of, fits, flares, least_of};
 use crate::drive::{Drive, Join};
 use crate::driver::Driver;
 use crate::network::{EdgeNo, Movement, Network};
-use crate::osm::LonLat;
 use crate::osm::facts::Policy;
+use crate::osm::{LonLat, NodeId};
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::turns::{LengthClass, Planner, StrokeLine, TurnCorridors, TurnEdges, turn_on};
@@ -41,10 +41,13 @@ enum Look {
 
 impl Turning<'_> {
     /// The corners of the turn: node, edge that ends, edge that begins there.
-    pub(crate) fn corners(&self, network: &Network) -> Vec<(i64, [EdgeNo; 2])> {
+    pub(crate) fn corners(&self, network: &Network) -> Vec<(NodeId, [EdgeNo; 2])> {
         let Join { from, arcs, to, .. } = self.join;
         let node = |edge: EdgeNo, end: bool| {
-            network.edges.get(edge.index()).map_or(0, |edge| if end { edge.to_node } else { edge.from_node })
+            network
+                .edges
+                .get(edge.index())
+                .map_or(NodeId::new(0), |edge| if end { edge.to_node } else { edge.from_node })
         };
         match (arcs.first(), arcs.last()) {
             (Some(&first), Some(&last)) => vec![(node(from, true), [from, first]), (node(to, false), [last, to])],
@@ -241,14 +244,14 @@ impl Turning<'_> {
     }
 
     /// The nodes at which the vehicle turns, with their positions.
-    pub(crate) fn nodes(&self, network: &Network) -> Vec<(i64, LonLat)> {
+    pub(crate) fn nodes(&self, network: &Network) -> Vec<(NodeId, LonLat)> {
         let end = |edge: EdgeNo, end: bool| {
             let edge = network.edges.get(edge.index())?;
             let mut line = network.positions(edge);
             let at = if end { line.next_back()? } else { line.next()? };
             Some((if end { edge.to_node } else { edge.from_node }, at))
         };
-        let mut nodes: Vec<(i64, LonLat)> =
+        let mut nodes: Vec<(NodeId, LonLat)> =
             [end(self.join.from, true), end(self.join.to, false)].into_iter().flatten().collect();
         nodes.dedup_by_key(|(node, _)| *node);
         nodes
@@ -268,7 +271,7 @@ impl Turning<'_> {
         settings.turn_policy.max(settings.policy)
     }
 
-    fn rounded(&self, corners: &[(i64, [EdgeNo; 2])], supposed: &Suppositions, radius_m: f64) -> Suppositions {
+    fn rounded(&self, corners: &[(NodeId, [EdgeNo; 2])], supposed: &Suppositions, radius_m: f64) -> Suppositions {
         let mut rounded = supposed.clone();
         for &(node, between) in corners {
             rounded.round(node, between, radius_m);
@@ -276,7 +279,7 @@ impl Turning<'_> {
         rounded
     }
 
-    fn radius_m(&self, network: &Network, node: i64, [from, to]: [EdgeNo; 2]) -> Option<f64> {
+    fn radius_m(&self, network: &Network, node: NodeId, [from, to]: [EdgeNo; 2]) -> Option<f64> {
         let (from, to) = (network.edges.get(from.index())?, network.edges.get(to.index())?);
         Some(self.settings().kerbs.at(network, node, [from, to]))
     }

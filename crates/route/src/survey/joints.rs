@@ -7,6 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::conditions::{edge_price, turn_price};
 use crate::network::{EdgeNo, MovementKind, Network};
 use crate::obstacles::CENTIMETRE;
+use crate::osm::NodeId;
 use crate::permits::{Permit, Permits};
 use crate::roads::Roads;
 use crate::through::EndsOnly;
@@ -136,7 +137,7 @@ impl Joints {
     }
 
     /// The place of the junction at a node.
-    pub(super) fn junction(&self, network: &Network, node: i64) -> Option<u32> {
+    pub(super) fn junction(&self, network: &Network, node: NodeId) -> Option<u32> {
         let edge = network.crossings.at(node).iter().find(|&&edge| network.edges[edge.index()].to_node == node)?;
         self.after(*edge).next().map(|step| self.place(step.item))
     }
@@ -193,8 +194,8 @@ fn range(ends: &[u32], edge: EdgeNo) -> std::ops::Range<usize> {
 /// A number for each junction and each piece of road. A junction of several nodes, over which passages lead, is one.
 fn places(network: &Network, roads: &Roads) -> Vec<u32> {
     let (movements, edges) = (&roads.movements, &network.edges);
-    let mut numbers: FxHashMap<i64, u32> = FxHashMap::default();
-    let mut number = |node: i64| {
+    let mut numbers: FxHashMap<NodeId, u32> = FxHashMap::default();
+    let mut number = |node: NodeId| {
         let next = numbers.len() as u32;
         *numbers.entry(node).or_insert(next)
     };

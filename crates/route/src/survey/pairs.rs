@@ -7,6 +7,7 @@ use super::{Opens, Step, Survey};
 use crate::conditions::{Condition, ConditionAt};
 use crate::evidence::Quantity;
 use crate::network::EdgeNo;
+use crate::osm::NodeId;
 use crate::plan::{Planner, Question, Unanswered};
 use crate::reporter::Reporter;
 use crate::snap::Position;
@@ -36,8 +37,8 @@ pub struct Pairs {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Measurand {
     Edge(Quantity, EdgeNo),
-    Corner(i64, [EdgeNo; 2]),
-    Junction(i64),
+    Corner(NodeId, [EdgeNo; 2]),
+    Junction(NodeId),
 }
 
 /// The measurements that complete most pairs, the best first. Each pair has the conditions of its route under conditions. Where routes of
@@ -323,7 +324,7 @@ mod tests {
             let condition = |&(edge, long, kind, metres): &(u32, u32, u8, u8)| {
                 let needed_m = 3.0 + f64::from(metres);
                 match kind {
-                    0 => Condition { at: ConditionAt::Junction(edge.into()), ..along([], needed_m) },
+                    0 => Condition { at: ConditionAt::Junction(NodeId::new(edge.into())), ..along([], needed_m) },
                     _ => along(edge..edge + long, needed_m),
                 }
             };

@@ -123,12 +123,13 @@ fn cosine([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::network::EdgeNo;
+    use crate::osm::NodeId;
     use crate::osm::facts::{Direction, Oneway};
     use crate::rows::{EdgeKey, MapNumbers, RoadName};
     use crate::verdict::{UnknownReason, Verdict};
 
     fn edge_key(index: u32, way_id: i64) -> EdgeKey {
-        let (from_node, to_node, direction) = (0, 1, Direction::Forward);
+        let (from_node, to_node, direction) = (NodeId::new(0), NodeId::new(1), Direction::Forward);
         EdgeKey { index: EdgeNo::new(index), id: i64::from(index), way_id, from_node, to_node, direction }
     }
 

@@ -107,7 +107,7 @@ fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddr
         let junctions = region.read(|database| database.map_junctions(bounds))?;
         let mut layer = Layer::new("junction", EXTENT as u16);
         for (node, polygons) in &junctions {
-            layer.polygons(u64::try_from(*node).ok(), &drawn_polygons(polygons, tile), |_| {});
+            layer.polygons(u64::try_from(node.get()).ok(), &drawn_polygons(polygons, tile), |_| {});
         }
         layer.finish(&mut bytes);
     }

@@ -8,7 +8,7 @@ use sqlx::query::Query;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::network::{EdgeNo, Portion, PortionRestriction};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use netcert_roads::turns::{JunctionArea, TurnFacts, TurnNo};
 use netcert_rows::{Bounds, EdgeMeasure};
 
@@ -38,7 +38,7 @@ pub struct Amendment<'a> {
     /// The edges that were certified again, in order, with the measures of their corridors.
     pub measures: Vec<(EdgeNo, EdgeMeasure)>,
     /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
-    pub junctions: Option<(Vec<i64>, Vec<JunctionArea>)>,
+    pub junctions: Option<(Vec<NodeId>, Vec<JunctionArea>)>,
     /// Certificates that were made again.
     pub sets: Vec<SetRenewal>,
 }
@@ -247,7 +247,7 @@ async fn change_turns(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sq
 }
 
 /// Replaces the areas of some junctions. Returns the box around all areas.
-async fn change_junctions(c: &mut SqliteConnection, nodes: &[i64], areas: &[JunctionArea]) -> Sql<Option<Bounds>> {
+async fn change_junctions(c: &mut SqliteConnection, nodes: &[NodeId], areas: &[JunctionArea]) -> Sql<Option<Bounds>> {
     let of_blob = |blob: &[u8]| {
         let polygons = blob::decode_polygons(blob).ok_or_else(|| content("the area of a junction"))?;
         Ok::<_, sqlx::Error>(around_all(&polygons))
@@ -258,7 +258,7 @@ async fn change_junctions(c: &mut SqliteConnection, nodes: &[i64], areas: &[Junc
     let mut at_border = false;
     for node in nodes {
         let sql = "SELECT geom FROM junction WHERE node_id = ?";
-        let gone: Option<Vec<u8>> = sqlx::query_scalar(sql).bind(node).fetch_optional(&mut *c).await?;
+        let gone: Option<Vec<u8>> = sqlx::query_scalar(sql).bind(node.get()).fetch_optional(&mut *c).await?;
         let gone = gone.as_deref().map(of_blob).transpose()?.flatten();
         let sides = |b: Bounds| [b.west, b.south, b.east, b.north];
         at_border |=

@@ -6,6 +6,7 @@ use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::account::AccountRow;
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use crate::osm::facts::Policy;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
@@ -51,7 +52,7 @@ pub struct Renewal<'a> {
     /// All turns of the network, if the database has turns and any of their kerbs may differ.
     pub turns: Option<&'a [TurnFacts]>,
     /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
-    pub junctions: Option<(&'a [i64], &'a [JunctionArea])>,
+    pub junctions: Option<(&'a [NodeId], &'a [JunctionArea])>,
     /// Certificates.
     pub sets: Vec<SetRenewal>,
     /// The record of the run.

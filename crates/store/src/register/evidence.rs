@@ -4,6 +4,7 @@ use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
 use crate::network::{Network, Site};
+use crate::osm::NodeId;
 use crate::words::Named;
 use netcert_evidence::{Columns, Counted, Edges, Entry, Quantity, Row, State, Target, Value, parts, surface};
 use netcert_rows::Bounds;
@@ -66,9 +67,9 @@ fn entry(row: &SqliteRow) -> Sql<Entry> {
         value: row.try_get("value")?,
         vehicle: optional("vehicle")?,
         way_id: row.try_get("way_id")?,
-        nodes: pair(row, "from_node", "to_node")?,
+        nodes: pair(row, "from_node", "to_node")?.map(|nodes| nodes.map(NodeId::new)),
         edge_id: row.try_get("edge_id")?,
-        junction: row.try_get("junction")?,
+        junction: row.try_get::<Option<i64>, _>("junction")?.map(NodeId::new),
         edges: pair(row, "from_edge", "to_edge")?,
         geom: row.try_get("geom")?,
     };
@@ -104,8 +105,8 @@ fn target(row: &SqliteRow, first: usize) -> Sql<Target> {
     let quantity: Quantity = word(row, first + 5)?;
     match (at(0)?, at(1)?, at(2)?.zip(at(3)?)) {
         (Some(edge), None, None) => Ok(Target::Edge(edge)),
-        (None, Some(node), None) if quantity == Quantity::Surface => Ok(Target::Area(node)),
-        (None, Some(node), edges) => Ok(Target::Corner { node, edges: edges.map(|(a, b)| [a, b]) }),
+        (None, Some(node), None) if quantity == Quantity::Surface => Ok(Target::Area(NodeId::new(node))),
+        (None, Some(node), edges) => Ok(Target::Corner { node: NodeId::new(node), edges: edges.map(|(a, b)| [a, b]) }),
         _ => Err(content("a place of a measurement is neither edge nor junction")),
     }
 }
@@ -176,7 +177,7 @@ pub(crate) async fn write(c: &mut SqliteConnection, register: &Register, time: &
         };
         bulk.add(no);
         bulk.add(edge);
-        bulk.add(node);
+        bulk.add(node.map(NodeId::get));
         bulk.add(edges.map(|edges| edges[0]));
         bulk.add(edges.map(|edges| edges[1]));
         bulk.add(counts);
@@ -207,10 +208,10 @@ fn add(bulk: &mut Bulk, entry: &Entry) {
     bulk.add(columns.vehicle);
     bulk.add(row.along.name());
     bulk.add(columns.way_id);
-    bulk.add(columns.nodes.map(|nodes| nodes[0]));
-    bulk.add(columns.nodes.map(|nodes| nodes[1]));
+    bulk.add(columns.nodes.map(|nodes| nodes[0].get()));
+    bulk.add(columns.nodes.map(|nodes| nodes[1].get()));
     bulk.add(columns.edge_id);
-    bulk.add(columns.junction);
+    bulk.add(columns.junction.map(NodeId::get));
     bulk.add(columns.edges.map(|edges| edges[0]));
     bulk.add(columns.edges.map(|edges| edges[1]));
     bulk.add(row.source.as_str());

@@ -3,6 +3,7 @@
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
 use netcert_roads::turns::TurnFacts;
 use netcert_rows::Measurement;
 
@@ -32,9 +33,9 @@ impl Database {
     }
 
     /// On some edges (`edge_id`), and at corners: each a node, and the edges before and after it.
-    fn measured(&mut self, edges: &[i64], corners: &[(i64, [i64; 2])]) -> Result<Vec<Measurement>, StoreError> {
+    fn measured(&mut self, edges: &[i64], corners: &[(NodeId, [i64; 2])]) -> Result<Vec<Measurement>, StoreError> {
         let edges: Vec<String> = edges.iter().map(i64::to_string).collect();
-        let corner = |(node, [from, to]): &(i64, [i64; 2])| {
+        let corner = |(node, [from, to]): &(NodeId, [i64; 2])| {
             format!(" OR p.node = {node} AND (p.from_edge IS NULL OR p.from_edge = {from} AND p.to_edge = {to})")
         };
         let at_corners: String = corners.iter().map(corner).collect();

@@ -6,6 +6,7 @@ use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
 use crate::network::EdgeNo;
+use crate::osm::NodeId;
 use crate::osm::facts::Policy;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
@@ -132,7 +133,7 @@ fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
         from: index(1)?,
         to: index(2)?,
         arcs: arc(3)?.zip(arc(4)?).map(|(first, last)| [first, last]),
-        via_node: row.try_get(5)?,
+        via_node: NodeId::new(row.try_get(5)?),
         angle_deg: row.try_get(6)?,
         verdict: verdict(row, 7, || format!("turn {fid}"))?,
         rsc_m: metres(row, 8)?,

@@ -9,6 +9,7 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::network::{EdgeNo, Movement, Network, PassageKind};
+use crate::osm::NodeId;
 use crate::osm::facts::Policy;
 use crate::words::VerdictKind;
 use netcert_roads::turns::{JunctionArea, KerbSource, TurnFacts, TurnNo};
@@ -72,7 +73,7 @@ impl TurnSet<'_> {
 pub(crate) struct Record {
     /// With numbers of edges of the whole network, and no index of a restriction.
     facts: TurnFacts,
-    via_node: i64,
+    via_node: NodeId,
     /// The tagged words of the restriction that forbids the turn.
     restriction: Option<String>,
     passage: Option<PassageKind>,
@@ -80,12 +81,12 @@ pub(crate) struct Record {
 
 /// The place of a turn in the order of the whole network ([`netcert_roads::turns::turn_facts`]): passages last, then by node, by edge before and by
 /// edge after. Passages have no node.
-pub(crate) type TurnKey = (bool, i64, EdgeNo, EdgeNo);
+pub(crate) type TurnKey = (bool, NodeId, EdgeNo, EdgeNo);
 
 impl Record {
     /// The record of a turn of a network. `number` returns the number of an edge in the whole network.
     pub(crate) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(EdgeNo) -> EdgeNo) -> Self {
-        let via_node = network.edges.get(facts.movement.from.index()).map_or(0, |edge| edge.to_node);
+        let via_node = network.edges.get(facts.movement.from.index()).map_or(NodeId::new(0), |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
         let restriction = forbids.map(|restriction| restriction.kind.name());
         let passage = network.passage_kind(&facts.through);
@@ -98,7 +99,7 @@ impl Record {
     pub(crate) fn key(&self) -> TurnKey {
         let Movement { from, to, .. } = self.facts.movement;
         let passage = !self.facts.through.is_empty();
-        (passage, if passage { 0 } else { self.via_node }, from, to)
+        (passage, if passage { NodeId::new(0) } else { self.via_node }, from, to)
     }
 }
 
@@ -130,7 +131,7 @@ pub(crate) async fn write(
         bulk.add(facts.id);
         bulk.add(i64::from(facts.movement.from) + 1);
         bulk.add(i64::from(facts.movement.to) + 1);
-        bulk.add(via_node);
+        bulk.add(via_node.get());
         bulk.add(geom);
         bulk.add((facts.angle_deg * 10.0).round() / 10.0);
         bulk.add(kind(&facts, passage));
@@ -342,7 +343,7 @@ pub(crate) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     Ok(TurnRow {
         turn: turn_key(row, 10)?,
         arcs: row.try_get::<Option<i64>, _>(14)?.zip(row.try_get(15)?).map(|(first, last)| [first, last]),
-        via_node: row.try_get(4)?,
+        via_node: NodeId::new(row.try_get(4)?),
         angle_deg: row.try_get(5)?,
         kind: row.try_get(6)?,
         kerb_radius_m: row.try_get(7)?,

@@ -5,7 +5,7 @@ use std::io;
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use netcert_roads::turns::{JunctionArea, KerbSource};
 use netcert_rows::Bounds;
 
@@ -20,7 +20,7 @@ use crate::layers::styles::{self, Shows};
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// A junction on a map: its node, and its polygons, each with its outer ring first.
-pub type MapJunction = (i64, Vec<Vec<Vec<LonLat>>>);
+pub type MapJunction = (NodeId, Vec<Vec<Vec<LonLat>>>);
 
 impl Database {
     /// The areas of all junctions, in order of their nodes.
@@ -30,7 +30,7 @@ impl Database {
     pub fn junction_areas(&mut self) -> Result<Vec<JunctionArea>, StoreError> {
         self.session.run(async |c| {
             rows(c, "SELECT node_id, roads, kerb_source, geom FROM junction ORDER BY node_id", |row| {
-                let node: i64 = row.try_get(0)?;
+                let node = NodeId::new(row.try_get(0)?);
                 let damaged = || content(format!("the area of junction {node}"));
                 let kerb_source =
                     row.try_get::<Option<&str>, _>(2)?.map(|word| KerbSource::named(word).ok_or_else(damaged));
@@ -54,7 +54,7 @@ impl Database {
         self.session.run(async |c| {
             let query = sqlx::query(sql).bind(west).bind(east).bind(south).bind(north);
             let read = |row: &sqlx::sqlite::SqliteRow| {
-                let node: i64 = row.try_get(0)?;
+                let node = NodeId::new(row.try_get(0)?);
                 let polygons = blob::decode_polygons(row.try_get(1)?);
                 Ok((node, polygons.ok_or_else(|| content(format!("the area of junction {node}")))?))
             };
@@ -71,9 +71,9 @@ pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, t
 }
 
 /// Replaces the areas at some nodes. A node without a new area has none any more.
-pub(crate) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[JunctionArea]) -> Sql<()> {
+pub(crate) async fn replace(c: &mut SqliteConnection, nodes: &[NodeId], areas: &[JunctionArea]) -> Sql<()> {
     for node in nodes {
-        sqlx::query("DELETE FROM junction WHERE node_id = ?").bind(node).execute(&mut *c).await?;
+        sqlx::query("DELETE FROM junction WHERE node_id = ?").bind(node.get()).execute(&mut *c).await?;
     }
     insert(c, areas.iter().cloned().map(Ok)).await.map(|_| ())
 }
@@ -90,7 +90,7 @@ pub(crate) async fn insert(
         let encoded = blob::encode_polygons(&polygons);
         let (geom, around) = encoded.ok_or_else(|| content(format!("the area of junction {node} is empty")))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
-        bulk.add(node);
+        bulk.add(node.get());
         bulk.add(roads as i64);
         bulk.add(kerb_source.map(KerbSource::name));
         bulk.add(geom);

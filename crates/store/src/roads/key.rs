@@ -6,6 +6,7 @@ use sqlx::sqlite::SqliteRow;
 use netcert_rows::{EdgeKey, RoadName, TurnKey};
 
 use crate::columns::read::{edge_of, turn_of, word};
+use crate::osm::NodeId;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -15,8 +16,8 @@ pub(crate) fn edge_key(row: &SqliteRow, at: usize) -> Sql<EdgeKey> {
         index: edge_of(row.try_get(0)?),
         id: row.try_get(at)?,
         way_id: row.try_get(at + 1)?,
-        from_node: row.try_get(at + 2)?,
-        to_node: row.try_get(at + 3)?,
+        from_node: NodeId::new(row.try_get(at + 2)?),
+        to_node: NodeId::new(row.try_get(at + 3)?),
         direction: word(row, at + 4)?,
     })
 }

@@ -10,7 +10,7 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use crate::network::{Areas, Crossings, Edge, EdgeNo, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
 use crate::osm::facts::class_and_link;
 use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
-use crate::osm::{LonLat, StringPool};
+use crate::osm::{LonLat, NodeId, StringPool};
 
 use crate::columns::read::{index, range, rows, word};
 use crate::database::Database;
@@ -204,8 +204,8 @@ fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>, 
     Ok(Edge {
         id: row.try_get(1)?,
         road: index(row, 2, roads)?,
-        from_node: row.try_get(3)?,
-        to_node: row.try_get(4)?,
+        from_node: NodeId::new(row.try_get(3)?),
+        to_node: NodeId::new(row.try_get(4)?),
         direction,
         shape: start..end as u32,
         narrowings: range(row, 8)?,

@@ -203,8 +203,8 @@ pub(crate) async fn write_edge(
     bulk.add(i64::from(index) + 1);
     bulk.add(edge.id);
     bulk.add(road.road.way_id);
-    bulk.add(edge.from_node);
-    bulk.add(edge.to_node);
+    bulk.add(edge.from_node.get());
+    bulk.add(edge.to_node.get());
     bulk.add(edge.direction.name());
     bulk.add(geom);
     bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)));

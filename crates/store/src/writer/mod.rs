@@ -11,8 +11,8 @@ use std::path::Path;
 
 use crate::account::AccountRow;
 use crate::network::{Area, EdgeNo, Portion};
-use crate::osm::Backdrop;
 use crate::osm::facts::Policy;
+use crate::osm::{Backdrop, NodeId};
 use netcert_roads::turns::{JunctionArea, TurnFacts, TurnNo};
 use netcert_rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCertificate};
 
@@ -63,7 +63,7 @@ struct Turns {
     rows: Sorter<TurnKey, (u32, turns::Record)>,
     count: u32,
     /// By node.
-    junctions: Sorter<i64, JunctionArea>,
+    junctions: Sorter<NodeId, JunctionArea>,
     /// By the turns' numbers.
     certificates: CertificateSorter,
 }

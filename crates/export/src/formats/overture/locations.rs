@@ -3,6 +3,7 @@
 
 use std::io::Write as _;
 
+use crate::osm::NodeId;
 use crate::osm::facts::Direction;
 use crate::rows::EdgeNo;
 use crate::rows::{EdgeKey, EdgeStep};
@@ -19,7 +20,7 @@ pub(super) struct EdgeLocation {
     pub(super) shape_start: u32,
     pub(super) heading: Direction,
     /// The node at the edge's end, in direction of travel.
-    pub(super) end: i64,
+    pub(super) end: NodeId,
 }
 
 const LOCATION_BYTES: usize = 32;
@@ -56,7 +57,7 @@ impl EdgeLocation {
             self.way_id.cast_unsigned(),
             u64::from(self.chain) << 32 | u64::from(self.shape_start),
             self.heading as u64,
-            self.end.cast_unsigned(),
+            self.end.get().cast_unsigned(),
         ];
         let mut bytes = [0; LOCATION_BYTES];
         bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers).for_each(|(word, number)| *word = number.to_le_bytes());
@@ -72,7 +73,7 @@ impl EdgeLocation {
             chain: (chain_and_start >> 32) as u32,
             shape_start: chain_and_start as u32,
             heading: if heading == 0 { Direction::Forward } else { Direction::Backward },
-            end: end.cast_signed(),
+            end: NodeId::new(end.cast_signed()),
         }
     }
 }
@@ -108,7 +109,14 @@ mod tests {
 
     fn facts(way_id: i64, shape_start: u32, positions: u32, direction: Direction) -> EdgeStep {
         let (verdict, rsc_m, width_source) = (Verdict::Safe, None, None);
-        let edge = EdgeKey { index: EdgeNo::new(0), id: 0, way_id, from_node: 1, to_node: -2, direction };
+        let edge = EdgeKey {
+            index: EdgeNo::new(0),
+            id: 0,
+            way_id,
+            from_node: NodeId::new(1),
+            to_node: NodeId::new(-2),
+            direction,
+        };
         EdgeStep { edge, shape_start, positions, verdict, rsc_m, width_source }
     }
 

@@ -19,7 +19,7 @@ use std::io::Write as _;
 use serde_json::json;
 
 use super::{Options, Target};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::rows::EdgeNo;
 use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
@@ -83,7 +83,7 @@ fn end(mut sink: Sink) -> Result<(), ExportError> {
 
 fn write_connectors(
     source: &Source<'_>,
-    nodes: Sorted<i64, LonLat>,
+    nodes: Sorted<NodeId, LonLat>,
     destination: &mut Destination,
 ) -> Result<(), ExportError> {
     let mut sink = begin(source, destination.create("connector.geojson")?)?;
@@ -154,7 +154,7 @@ struct Writer<'w, 'r> {
     scope: segment::Scope,
     locations: &'w mut EdgeLocations,
     transitions: &'w mut Transitions,
-    connectors: &'w mut Sorter<i64, LonLat>,
+    connectors: &'w mut Sorter<NodeId, LonLat>,
     source: &'w Source<'r>,
     sink: &'w mut Sink,
     written: u64,
@@ -190,7 +190,7 @@ impl Writer<'_, '_> {
     }
 
     /// The prohibited sequences after a permitted edge that ends at the node `end`.
-    fn forbidden(&mut self, edge: EdgeNo, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
+    fn forbidden(&mut self, edge: EdgeNo, end: NodeId) -> Result<Vec<segment::Forbidden>, ExportError> {
         let mut out = Vec::new();
         for sequence in self.transitions.of(edge)? {
             let mut via = end;

@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 
 use super::locations::EdgeLocation;
 use super::values::{self, Values};
-use crate::osm::LonLat;
 use crate::osm::facts::Direction;
+use crate::osm::{LonLat, NodeId};
 use crate::rows::{EdgeRow, RoadName};
 use crate::words::Named as _;
 
@@ -20,14 +20,14 @@ pub(super) struct Scope {
 
 /// A prohibited sequence: for each step the node, the segment and the heading on it.
 pub(super) struct Forbidden {
-    pub(super) steps: Vec<(i64, String, Direction)>,
+    pub(super) steps: Vec<(NodeId, String, Direction)>,
 }
 
 /// A stretch between two junctions.
 pub(super) struct SegmentStretch {
     pub(super) shape_start: u32,
     /// The end nodes, in way order.
-    nodes: [i64; 2],
+    nodes: [NodeId; 2],
     /// The line, in way order.
     line: Vec<LonLat>,
     /// What the map says of it.
@@ -63,7 +63,7 @@ pub(super) fn id(way_id: i64, chain: u32) -> String {
 }
 
 /// The id of a connector, such as `n123`.
-pub(super) fn connector_id(node: i64) -> String {
+pub(super) fn connector_id(node: NodeId) -> String {
     format!("n{node}")
 }
 
@@ -75,7 +75,7 @@ impl Segment {
     }
 
     /// The nodes at which the segment meets others.
-    pub(super) fn nodes(&self) -> impl Iterator<Item = (i64, LonLat)> + '_ {
+    pub(super) fn nodes(&self) -> impl Iterator<Item = (NodeId, LonLat)> + '_ {
         self.stretches.iter().flat_map(|stretch| {
             let ends = [stretch.line.first(), stretch.line.last()];
             stretch.nodes.into_iter().zip(ends).filter_map(|(node, at)| Some((node, *at?)))
@@ -156,7 +156,7 @@ impl Segment {
     fn connectors(&self, at: &[f64]) -> Vec<Value> {
         let begin = self.stretches.first().map(|stretch| stretch.nodes[0]);
         let ends = self.stretches.iter().map(|stretch| stretch.nodes[1]);
-        let connector = |(node, at): (i64, &f64)| json!({"connector_id": connector_id(node), "at": at});
+        let connector = |(node, at): (NodeId, &f64)| json!({"connector_id": connector_id(node), "at": at});
         begin.into_iter().chain(ends).zip(at).map(connector).collect()
     }
 
@@ -202,9 +202,9 @@ impl Segment {
             for heading in [Direction::Forward, Direction::Backward] {
                 let (ahead, back) = (heading as usize, 1 - heading as usize);
                 let Some(forbidden) = &stretch.permitted[ahead] else { continue };
-                let mut rule = |steps: &[(i64, String, Direction)]| {
+                let mut rule = |steps: &[(NodeId, String, Direction)]| {
                     let Some(last) = steps.last() else { return };
-                    let entry = |(node, segment, _): &(i64, String, Direction)| json!({"connector_id": connector_id(*node), "segment_id": segment});
+                    let entry = |(node, segment, _): &(NodeId, String, Direction)| json!({"connector_id": connector_id(*node), "segment_id": segment});
                     let mut rule = Map::new();
                     rule.insert("sequence".to_owned(), steps.iter().map(entry).collect());
                     rule.insert("final_heading".to_owned(), json!(last.2.name()));
@@ -262,7 +262,13 @@ mod tests {
         let line = [from, to].map(|lon_e7| LonLat { lon_e7: lon_e7 * 1000, lat_e7: 0 }).to_vec();
         let permitted = permitted.map(|yes| yes.then(Vec::new));
         let values = Values { exists: [true; 2], ..Values::default() };
-        SegmentStretch { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, values, permitted }
+        SegmentStretch {
+            shape_start: 0,
+            nodes: [from, to].map(|node| NodeId::new(node.into())),
+            line,
+            values,
+            permitted,
+        }
     }
 
     fn segment(stretches: Vec<SegmentStretch>) -> Value {

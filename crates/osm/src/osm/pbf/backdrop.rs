@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::osm::backdrop::{self, Backdrop, BackdropShape};
 use crate::osm::changes::{Changes, Kind};
 use crate::osm::facts::{BackdropForm, BackdropKind};
-use crate::osm::{LonLat, NodeTable};
+use crate::osm::{LonLat, NodeId, NodeTable};
 
 use super::block::Block;
 use super::error::Problem;
@@ -51,13 +51,13 @@ pub(super) struct BackdropWay {
     pub(super) id: i64,
     pub(super) kind: Option<BackdropKind>,
     pub(super) name: Option<Box<str>>,
-    pub(super) refs: Vec<i64>,
+    pub(super) refs: Vec<NodeId>,
 }
 
 /// A node that names a place.
 #[derive(Debug)]
 pub(super) struct PlaceNode {
-    pub(super) id: i64,
+    pub(super) id: NodeId,
     pub(super) kind: BackdropKind,
     pub(super) name: Box<str>,
     pub(super) place: LonLat,
@@ -130,7 +130,7 @@ impl AreaGatherer {
                     let at = ways.binary_search_by_key(&member.0, |way| way.id).ok()?;
                     ways.get(at).map(|way| way.refs.as_slice())
                 };
-                let members: Vec<&[i64]> = members.iter().filter(known).map(refs).collect::<Option<_>>()?;
+                let members: Vec<&[NodeId]> = members.iter().filter(known).map(refs).collect::<Option<_>>()?;
                 placed_rings(&backdrop::rings(&members)?, nodes)
             };
             if let Some(shape) = area(of(false).zip(of(true)), &mut tally) {
@@ -148,7 +148,7 @@ impl AreaGatherer {
         }
         all.extend(places.into_iter().map(|PlaceNode { id, kind, name, place }| Backdrop {
             kind,
-            object: (Kind::Node, id),
+            object: (Kind::Node, id.get()),
             name: Some(name),
             shape: BackdropShape::Place(place),
         }));
@@ -161,7 +161,7 @@ impl AreaGatherer {
 type Rings = Vec<Vec<LonLat>>;
 
 /// The rings as positions; `None` if a node is missing.
-fn placed_rings(rings: &[Vec<i64>], nodes: &NodeTable) -> Option<Rings> {
+fn placed_rings(rings: &[Vec<NodeId>], nodes: &NodeTable) -> Option<Rings> {
     rings.iter().map(|ring| ring.iter().map(|&id| nodes.place(id)).collect()).collect()
 }
 
@@ -177,7 +177,7 @@ fn area(rings: Option<(Rings, Rings)>, tally: &mut BackdropTally) -> Option<Back
 }
 
 /// A line has a gap where nodes are missing.
-fn line(refs: &[i64], nodes: &NodeTable, tally: &mut BackdropTally) -> Option<BackdropShape> {
+fn line(refs: &[NodeId], nodes: &NodeTable, tally: &mut BackdropTally) -> Option<BackdropShape> {
     let places: Vec<Option<LonLat>> = refs.iter().map(|&id| nodes.place(id)).collect();
     let parts = places.split(Option::is_none).filter(|part| part.len() > 1);
     let simplified =

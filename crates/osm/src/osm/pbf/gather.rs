@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::osm::{LonLat, NodeTable, RoadArea, StringPool, Way, facts::PointFacts};
+use crate::osm::{LonLat, NodeId, NodeTable, RoadArea, StringPool, Way, facts::PointFacts};
 
 use super::{
     account::NodeTally,
@@ -26,9 +26,9 @@ const DUPLICATE_ID: &str = "duplicate_id";
 #[derive(Debug, Default)]
 pub(super) struct WayGatherer {
     pub(super) ways: Vec<Way>,
-    pub(super) refs: Vec<i64>,
+    pub(super) refs: Vec<NodeId>,
     pub(super) strings: StringPool,
-    pub(super) inline_places: Vec<(i64, LonLat)>,
+    pub(super) inline_places: Vec<(NodeId, LonLat)>,
     pub(super) read: u64,
     pub(super) left_out: BTreeMap<&'static str, u64>,
     pub(super) notes: BTreeMap<&'static str, u64>,
@@ -158,12 +158,12 @@ impl WayGatherer {
     }
 
     /// The distinct nodes that the ways of the backdrop name.
-    pub(super) fn backdrop_node_ids(&self) -> Vec<i64> {
+    pub(super) fn backdrop_node_ids(&self) -> Vec<NodeId> {
         distinct(self.backdrop.iter().flat_map(|way| way.refs.iter().copied()).collect())
     }
 
     /// The distinct nodes that the ways name.
-    pub(super) fn node_ids(&self) -> Vec<i64> {
+    pub(super) fn node_ids(&self) -> Vec<NodeId> {
         let mut ids = self.refs.clone();
         ids.extend(self.areas.iter().flat_map(|area| &area.refs));
         distinct(ids)
@@ -171,7 +171,7 @@ impl WayGatherer {
 }
 
 /// Of several in a row with the same id, the last one stays.
-pub(super) fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
+pub(super) fn keep_last<T, I: PartialEq>(sorted: &mut Vec<T>, id: impl Fn(&T) -> I) {
     sorted.dedup_by(|later, earlier| {
         let same = id(later) == id(earlier);
         if same {
@@ -181,7 +181,7 @@ pub(super) fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
     });
 }
 
-fn distinct(mut ids: Vec<i64>) -> Vec<i64> {
+fn distinct(mut ids: Vec<NodeId>) -> Vec<NodeId> {
     ids.par_sort_unstable();
     ids.dedup();
     ids.shrink_to_fit();
@@ -239,7 +239,7 @@ impl NodeGatherer {
     }
 
     /// The table of the backdrop's nodes.
-    pub(super) fn backdrop(&mut self, ids: Vec<i64>, inline_places: &[(i64, LonLat)]) -> NodeTable {
+    pub(super) fn backdrop(&mut self, ids: Vec<NodeId>, inline_places: &[(NodeId, LonLat)]) -> NodeTable {
         let mut table = NodeTable { ids, places: std::mem::take(&mut self.backdrop) };
         for &(id, place) in inline_places {
             if let Some(slot) = table.index(id).and_then(|index| table.places.get_mut(index)) {
@@ -253,9 +253,9 @@ impl NodeGatherer {
     /// node; of several the file's last one counts.
     pub(super) fn finish(
         mut self,
-        ids: Vec<i64>,
-        inline_places: &[(i64, LonLat)],
-    ) -> (NodeTable, Vec<(i64, PointFacts)>, NodeTally) {
+        ids: Vec<NodeId>,
+        inline_places: &[(NodeId, LonLat)],
+    ) -> (NodeTable, Vec<(NodeId, PointFacts)>, NodeTally) {
         for (place, seen) in self.places.iter().zip(&self.seen) {
             match (seen, place) {
                 (false, _) => self.tally.missing += 1,

@@ -5,6 +5,7 @@
 use osmpbfreader::osmformat;
 use protobuf::Message;
 
+use crate::osm::NodeId;
 use crate::osm::{
     LonLat,
     changes::{Changes, Kind},
@@ -46,9 +47,9 @@ pub(super) struct NodeBatch {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ids<'n> {
     /// Those that kept ways name.
-    pub(super) named: &'n [i64],
+    pub(super) named: &'n [NodeId],
     /// Those that ways of the backdrop name.
-    pub(super) backdrop: &'n [i64],
+    pub(super) backdrop: &'n [NodeId],
 }
 
 /// Reads the nodes of a block. Nodes that are `changed` are passed over.
@@ -102,13 +103,13 @@ pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, Problem> {
 
 /// The sorted ids of named nodes. A search starts where the last one ended, because nodes in a file mostly ascend.
 struct Named<'n> {
-    ids: &'n [i64],
+    ids: &'n [NodeId],
     at: usize,
 }
 
 impl Named<'_> {
     #[inline]
-    fn index(&mut self, id: i64) -> Option<u32> {
+    fn index(&mut self, id: NodeId) -> Option<u32> {
         for _ in 0..8 {
             match self.ids.get(self.at) {
                 Some(&here) if here < id => self.at += 1,
@@ -119,7 +120,7 @@ impl Named<'_> {
         self.search(id)
     }
 
-    fn search(&mut self, id: i64) -> Option<u32> {
+    fn search(&mut self, id: NodeId) -> Option<u32> {
         let before = self.at.checked_sub(1).and_then(|i| self.ids.get(i));
         if before.is_none_or(|&before| before < id) && self.ids.get(self.at).is_none_or(|&here| here > id) {
             return None;
@@ -162,17 +163,18 @@ where
             self.batch.deleted += 1;
             return;
         }
-        if let Some(index) = self.named.index(id) {
+        let node = NodeId::new(id);
+        if let Some(index) = self.named.index(node) {
             self.take(index, self.block.grid.place(lat, lon));
         }
-        if let Some(index) = self.backdrop.index(id) {
+        if let Some(index) = self.backdrop.index(node) {
             self.batch.backdrop.push(Hit { index, place: self.block.grid.place(lat, lon) });
         }
         if !self.tags.is_empty()
             && let Some((kind, name)) = place_of(&self.tags)
             && let Some(place) = self.block.grid.place(lat, lon)
         {
-            self.batch.place_nodes.push(PlaceNode { id, kind, name: name.into(), place });
+            self.batch.place_nodes.push(PlaceNode { id: node, kind, name: name.into(), place });
         }
     }
 

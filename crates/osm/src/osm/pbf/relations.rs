@@ -8,7 +8,7 @@ use rustc_hash::FxHashSet;
 
 use crate::osm::changes::{Changes, Kind};
 use crate::osm::facts::{BackdropForm, NoRule, TurnRule, backdrop_kind, turn_rules};
-use crate::osm::{Restriction, Via};
+use crate::osm::{NodeId, Restriction, Via};
 
 use super::{
     backdrop::AreaRelation,
@@ -73,7 +73,7 @@ pub(super) struct RelationBatch {
     pub(super) tally: RelationTally,
     pub(super) restrictions: Vec<Restriction>,
     /// `via` nodes of whole restrictions, for any vehicle.
-    pub(super) vias: Vec<i64>,
+    pub(super) vias: Vec<NodeId>,
 }
 
 /// A relation whose message was checked, and its tags.
@@ -173,7 +173,7 @@ pub(super) fn read(
 #[derive(Debug, Default)]
 struct Members {
     from: Vec<i64>,
-    via_nodes: Vec<i64>,
+    via_nodes: Vec<NodeId>,
     via_ways: Vec<i64>,
     to: Vec<i64>,
     itself: bool,
@@ -183,7 +183,7 @@ impl Members {
     fn of(relation: &Relation, strings: &Strings<'_>, object: ObjectId) -> Result<Self, Problem> {
         let mut found = Self::default();
         // Nodes that stand for a missing `via`, the better ones first.
-        let mut hints: [Vec<i64>; 2] = Default::default();
+        let mut hints: [Vec<NodeId>; 2] = Default::default();
         let mut member = 0;
         for ((&difference, kind), &role) in relation.memids.iter().zip(&relation.types).zip(&relation.roles_sid) {
             super::block::add(&mut member, difference, object, "a member")?;
@@ -194,10 +194,10 @@ impl Members {
             match (strings.text(role as u64, object)?.trim().to_ascii_lowercase().as_str(), kind) {
                 ("from", MemberType::WAY) => found.from.push(member),
                 ("to", MemberType::WAY) => found.to.push(member),
-                ("via", MemberType::NODE) => found.via_nodes.push(member),
+                ("via", MemberType::NODE) => found.via_nodes.push(NodeId::new(member)),
                 ("via", MemberType::WAY) => found.via_ways.push(member),
-                ("intersection", MemberType::NODE) => hints[0].push(member),
-                ("location_hint", MemberType::NODE) => hints[1].push(member),
+                ("intersection", MemberType::NODE) => hints[0].push(NodeId::new(member)),
+                ("location_hint", MemberType::NODE) => hints[1].push(NodeId::new(member)),
                 _ => {}
             }
             found.itself |= kind == MemberType::RELATION && member == relation.id();
@@ -270,8 +270,9 @@ mod tests {
         let mut batch = reading(&[("type", "restriction"), ("restriction", value)], members);
         let restriction = batch.restrictions.pop()?;
         let list = |ids: &[i64]| ids.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
+        let nodes_of = |nodes: &[NodeId]| list(&nodes.iter().map(|node| node.get()).collect::<Vec<_>>());
         let via = match &restriction.via {
-            Via::Nodes(nodes) => format!("@{}", list(nodes)),
+            Via::Nodes(nodes) => format!("@{}", nodes_of(nodes)),
             Via::Ways(ways) => list(ways),
         };
         Some(format!("{} > {via} > {}", list(&restriction.from), list(&restriction.to)))

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::osm::NodeId;
 use crate::osm::{
     LonLat, RoadArea, StringPool,
     changes::{Changes, Kind},
@@ -41,9 +42,9 @@ pub(super) struct KeptWay {
 pub(super) struct WayBatch {
     pub(super) kept: Vec<KeptWay>,
     /// References of the kept ways, one way after the other.
-    pub(super) refs: Vec<i64>,
+    pub(super) refs: Vec<NodeId>,
     /// Positions that kept ways carry (`LocationsOnWays`).
-    pub(super) inline_places: Vec<(i64, LonLat)>,
+    pub(super) inline_places: Vec<(NodeId, LonLat)>,
     pub(super) strings: StringPool,
     /// Ways left out as roads that map the surface of a road.
     pub(super) areas: Vec<RoadArea>,
@@ -204,7 +205,7 @@ where
         while !cursor.is_empty() {
             block::add(&mut node, cursor.sint()?, object, "a node reference")?;
             if last != Some(node) {
-                self.batch.refs.push(node);
+                self.batch.refs.push(NodeId::new(node));
                 block::limit(self.batch.refs.len() - start, NODES)?;
                 last = Some(node);
             }
@@ -224,7 +225,7 @@ where
             block::add(&mut lat, lats.sint()?, object, "a latitude")?;
             block::add(&mut lon, lons.sint()?, object, "a longitude")?;
             if let Some(place) = self.block.grid.place(lat, lon) {
-                self.batch.inline_places.push((node, place));
+                self.batch.inline_places.push((NodeId::new(node), place));
                 block::limit(self.batch.inline_places.len() - start, NODES)?;
             }
         }
