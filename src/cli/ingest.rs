@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::{Args, ValueHint};
 use netcert::osm::facts::{Countries, Rules, TrafficSide};
-use netcert::pipeline::{self, EDGES_AT_ONCE, Selection};
+use netcert::pipeline::{self, EDGES_AT_ONCE, Selection, TurnWork};
 use serde_json::json;
 
 use super::Session;
 use crate::cli::arguments::certify_options::{self, CertifyOptions};
 use crate::cli::arguments::values::country_code;
 use crate::cli::database::fleet::Fleet;
+use crate::cli::output::grouped;
 use crate::cli::session::progress::human;
 
 /// Read an OpenStreetMap extract or Overture's files, certify the roads, and write a GeoPackage.
@@ -51,6 +52,9 @@ pub(crate) struct Ingest {
     /// How many directed edges to certify at a time. Fewer take less memory, more take less time; certificates are the same.
     #[arg(long, value_name = "N", help_heading = "Memory", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
     edges_at_once: u64,
+    /// Print how much work the turns took, too: paths scored, sweeps, distances. It does not depend on the machine.
+    #[arg(long)]
+    stats: bool,
 }
 
 #[derive(Args)]
@@ -114,10 +118,29 @@ impl Ingest {
         };
         let summary = pipeline::ingest(&ask, &session.progress)?;
         session.progress.summary(&summary);
+        if self.stats {
+            session.progress.say(&work_of_turns(&summary.turns));
+        }
         let seconds = summary.stages.iter().map(|stage| stage.seconds).sum();
         session.progress.say(&done(&db, &summary.vehicles, seconds));
         Ok(())
     }
+}
+
+/// The counted work, for each turn that was laid out.
+fn work_of_turns(turns: &TurnWork) -> String {
+    let TurnWork { laid_out, of_this_run: work } = turns;
+    if *laid_out == 0 {
+        return "  work: no turn was laid out".to_owned();
+    }
+    let each = |count: u64| count as f64 / *laid_out as f64;
+    format!(
+        "  work: {} turns laid out; for each {:.1} paths scored, {:.1} sweeps, {} distances",
+        grouped(*laid_out),
+        each(work.scores),
+        each(work.sweeps),
+        grouped(each(work.distances).round() as u64),
+    )
 }
 
 fn done(db: &Path, vehicles: &[String], seconds: f64) -> String {

@@ -9,6 +9,7 @@ mod columns;
 mod conditional;
 mod conditions_suffice;
 mod corners;
+mod counted_work;
 mod diff;
 mod engines;
 mod evidence;

@@ -3,6 +3,7 @@
 
 pub mod corrections;
 pub mod corridor;
+pub mod counted;
 pub mod leeway;
 pub mod speed_profile;
 pub mod stop;

@@ -22,6 +22,7 @@ use crate::stet::{Model, SpanResult};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
+use netcert_base::counted::{WorkCount, counted};
 use netcert_roads::turns::{LengthClass, Planned, StrokeLine, TurnFacts, TurnNo, turn_on};
 
 /// Turns per batch.
@@ -51,6 +52,8 @@ pub struct TurnOutcome {
     verdicts: BTreeMap<(&'static str, &'static str), u64>,
     /// Turns for which corridors were made.
     pub laid_out: u64,
+    /// What their paths and certificates took.
+    pub work: WorkCount,
     turns: u64,
 }
 
@@ -126,12 +129,13 @@ pub fn certify_some_turns<E: Send>(
     mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
     let mut outcome = TurnOutcome::default();
-    make_turns(job, turns, reporter, &|_| Ok(()), |made| outcome.add(&made, &mut sink))?;
+    let work = make_turns(job, turns, reporter, &|_| Ok(()), |made| outcome.add(&made, &mut sink))?;
+    outcome.work += work;
     Ok(outcome)
 }
 
 /// Certifies some turns. `keep` gets each turn that took corridors as soon as it is done, from any thread. `sink` gets all turns in an
-/// order of their places.
+/// order of their places. Returns the work that all of them took.
 ///
 /// # Errors
 /// The first error of `keep` or `sink`.
@@ -141,12 +145,12 @@ pub fn make_turns<E: Send>(
     reporter: &dyn Reporter,
     keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
     mut sink: impl FnMut(TurnMade) -> Result<(), E>,
-) -> Result<(), E> {
+) -> Result<WorkCount, E> {
     reporter.begin("turns", turns.len() as u64);
     let strokes = job.network.strokes_of_edges();
     let measured = MeasuredWidths::find(job.network);
     let mut lines = Lines::default();
-    let mut done = 0;
+    let (mut done, mut work) = (0, WorkCount::default());
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
         let measured_m = |made: &TurnMade| {
@@ -154,20 +158,22 @@ pub fn make_turns<E: Send>(
             measured.as_ref().filter(|_| lacks)?.most_m(job.network, &strokes, &job.turns[made.turn.index()])
         };
         let made = batch.par_iter().map(|&turn| {
-            let made = in_time(job, turn, &strokes, &lines);
-            if made.laid_out && measured_m(&made).is_none() { keep(&made).map(|()| made) } else { Ok(made) }
+            let (made, work) = counted(|| in_time(job, turn, &strokes, &lines));
+            let kept = if made.laid_out && measured_m(&made).is_none() { keep(&made) } else { Ok(()) };
+            kept.map(|()| (made, work))
         });
-        let mut made = made.collect::<Result<Vec<_>, E>>()?;
+        let (mut made, of_each): (Vec<_>, Vec<_>) = made.collect::<Result<Vec<_>, E>>()?.into_iter().unzip();
+        of_each.into_iter().for_each(|of_turn| work += of_turn);
         let again: Vec<_> = made.iter_mut().filter_map(|made| Some((measured_m(made)?, made))).collect();
         if !again.is_empty() {
-            plan_narrower(job, again, &strokes, &lines, keep)?;
+            work += plan_narrower(job, again, &strokes, &lines, keep)?;
         }
         made.into_iter().try_for_each(&mut sink)?;
         done += batch.len() as u64;
         reporter.advance(done);
     }
     reporter.end();
-    Ok(())
+    Ok(work)
 }
 
 /// The turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
@@ -282,14 +288,15 @@ fn lacks_m(made: &TurnMade) -> Option<f64> {
 }
 
 /// Tries the plans of narrower roads for turns that lack room, given with how much farther out than on the map their strips are, metres.
+/// Returns the work that they took.
 fn plan_narrower<E: Send>(
     job: &TurnJob<'_>,
     mut again: Vec<(f32, &mut TurnMade)>,
     strokes: &[u32],
     lines: &Lines,
     keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
-) -> Result<(), E> {
-    let mut narrower = Narrower::new(job.network);
+) -> Result<WorkCount, E> {
+    let (mut narrower, mut work) = (Narrower::new(job.network), WorkCount::default());
     for step in narrower::steps() {
         let tried = |(most_m, made): &(f32, &mut TurnMade)| {
             lacks_m(made).is_some_and(|lacks_m| narrower::tried(step, *most_m, lacks_m))
@@ -299,16 +306,20 @@ fn plan_narrower<E: Send>(
         }
         narrower.set(step);
         let there = TurnJob { network: &narrower.network, ..*job };
-        again.par_iter_mut().filter(|turn| tried(turn)).for_each(|(_, made)| {
-            let work = Work { what: "turn", number: u64::from(made.turn) + 1, of: job.turns.len() as u64, edge: None };
+        let of_each = again.par_iter_mut().filter(|turn| tried(turn)).map(|(_, made)| {
+            let what = Work { what: "turn", number: u64::from(made.turn) + 1, of: job.turns.len() as u64, edge: None };
             // A turn that takes too long keeps what is known of it.
-            let better = watch::guarded(work, watch::patience(), || plan_as_on(job, &there, made, strokes, lines));
+            let plan = || watch::guarded(what, watch::patience(), || plan_as_on(job, &there, made, strokes, lines));
+            let (better, work) = counted(plan);
             for (vehicle, certificate) in better.unwrap_or_default() {
                 made.certificates[vehicle] = certificate;
             }
+            work
         });
+        of_each.collect::<Vec<_>>().into_iter().for_each(|of_turn| work += of_turn);
     }
-    again.into_par_iter().try_for_each(|(_, made)| keep(made))
+    again.into_par_iter().try_for_each(|(_, made)| keep(made))?;
+    Ok(work)
 }
 
 /// The certificates, by vehicle, of the paths that nearly fit on a narrower road and are safe here.

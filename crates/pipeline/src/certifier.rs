@@ -20,7 +20,7 @@ use super::error::RunError;
 use super::reuse::{Earlier, without_corridor};
 use super::roads::Roads;
 use super::share::Share;
-use super::summary::Summary;
+use super::summary::{Summary, TurnWork};
 use super::task_results::{failed_stroke, failed_turn, unknown_rest};
 
 /// The work on one portion.
@@ -154,6 +154,7 @@ impl Certifier<'_> {
         self.reporter.end();
         summary.account.extend(outcome.rows());
         summary.stage("turns", clock, outcome.certificates(), "turn certificates");
+        summary.turns = TurnWork { laid_out: outcome.laid_out, of_this_run: outcome.work };
         Ok(())
     }
 
@@ -211,7 +212,8 @@ impl Certifier<'_> {
         }
         let checkpoint = Mutex::new(checkpoint);
         let keep = |made: &TurnMade| locked(&checkpoint).keep(part, std::slice::from_ref(made));
-        make_turns(&job, &left, share, &keep, |made| outcome.add(&made, &mut sink))?;
+        let work = make_turns(&job, &left, share, &keep, |made| outcome.add(&made, &mut sink))?;
+        outcome.work += work;
         Ok(())
     }
 }

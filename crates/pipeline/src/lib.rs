@@ -62,7 +62,7 @@ pub use ingest::{Ingest, ingest};
 pub use replacement::{Certify, certify};
 pub use roads::{EDGES_AT_ONCE, read_network};
 pub use select::{Selection, own_countries, selected};
-pub use summary::{StageSummary, Summary};
+pub use summary::{StageSummary, Summary, TurnWork};
 pub use task_results::TaskResult;
 pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, NeededTasks, StrokesDone, Task, TaskError, divide};
 pub use update::{Newer, Update, run_of_extract, update};

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::edge_verdicts::EdgeVerdicts;
 use super::error::RunError;
 use super::identity;
-use super::summary::Summary;
+use super::summary::{Summary, TurnWork};
 use super::vehicle_record::record;
 use crate::certify::{Job, TurnJob, certify_network, certify_turns};
 use crate::reporter::Reporter;
@@ -73,6 +73,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
         })?;
         summary.account.extend(outcome.rows());
         summary.stage("turns", clock, outcome.certificates(), "turn certificates");
+        summary.turns = TurnWork { laid_out: outcome.laid_out, of_this_run: outcome.work };
         if !db.keeps_turns()? {
             let nodes = junction_nodes(&network, &facts);
             junctions = junction_areas(&network, &nodes, &settings.turn_params());

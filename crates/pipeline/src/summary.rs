@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::account::AccountRow;
+use netcert_base::counted::WorkCount;
 
 /// The summary of one stage of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,11 +18,22 @@ pub struct StageSummary {
     pub what: &'static str,
 }
 
+/// What the turns of a run took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TurnWork {
+    /// Turns for which corridors were made, by this run or one that it goes on from.
+    pub laid_out: u64,
+    /// The work of this run. What an earlier run finished is not counted.
+    pub of_this_run: WorkCount,
+}
+
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Summary {
     /// The stages in order.
     pub stages: Vec<StageSummary>,
+    /// What its turns took.
+    pub turns: TurnWork,
     /// The account of the run.
     pub account: Vec<AccountRow>,
     /// Ids of the certified vehicles.
