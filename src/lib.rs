@@ -93,9 +93,9 @@
 //!
 //! # The pipeline
 //!
-//! The folders are the pipeline, in the order in which data flows; nothing flows back:
+//! The modules are the pipeline, in the order in which data flows; nothing flows back:
 //!
-//! | stage | folder | from → to |
+//! | stage | module | from → to |
 //! | --- | --- | --- |
 //! | read | [`osm`] | a `.osm.pbf` file → `osm::Extract`: drivable ways as facts, and where their nodes are |
 //! | read | `overture` | Overture's segments and connectors → the same `Extract` |

@@ -11,6 +11,7 @@
 //! | `certificate` | one vehicle on one corridor |
 //! | `many` | many vehicles on many corridors, as rows |
 //! | `report` | what the independent checker says of a certificate file |
+//! | `verification` | what the independent checker says of a database |
 //! | `rows` | rows of edges and turns as Arrow |
 //! | `region` | a database |
 //! | `filters` | which of its rows a table has |

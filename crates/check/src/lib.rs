@@ -34,6 +34,7 @@
 //! | `subject` | a vehicle on a corridor along a plan |
 //! | `limiting`, `spans`, `columns` | check limiting places, claims about spans, and columns of leeway |
 //! | `printed` | the paper's 𝒞, which decides nothing |
+//! | `drawn` | drawn vehicles and numbers, for tests |
 //!
 //! Rounding is handled in three ways. Nominal motion, feet and kernels are *chosen* in plain `f64`: another choice
 //! would give another bound and not a wrong one, and their rounding is counted (`link::DEFECT_RAD`). *Bounds* are

@@ -18,6 +18,8 @@
 //! | `json` | the explanation as JSON |
 //! | `drawn`, `swept` | the shapes that a map shows of an explanation |
 //! | `geojson` | these shapes as GeoJSON, for maps and for programs such as QGIS |
+//! | `diff` | what changed for a vehicle from one database to another |
+//! | `manoeuvres` | the turns by which regulators judge vehicles |
 
 use netcert_base::{stop, vehicle, verdict};
 use netcert_certify as certify;

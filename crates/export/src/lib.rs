@@ -8,17 +8,19 @@
 //!
 //! | file | for |
 //! | --- | --- |
+//! | `ask` | what an export is asked for |
 //! | `permit` | the rule, and the edges and turns that it permits |
 //! | `header` | the header of every output |
 //! | `measurements` | the measurements behind the permits, for the header |
 //! | `source` | rows from the database, each with its permit |
-//! | `rings` | the edges that a passage leads over |
 //! | `corners` | edges before a refused corner of a road |
 //! | `sequences` | sequences of permitted edges that may not be driven |
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `destination` | the output: a file, a folder or a stream |
 //! | `unfinished` | what to remove if the program is stopped |
 //! | `formats` | one file or folder for each target |
+//! | `cluster` | the tables that machines of a cluster read and write |
+//! | `error` | errors |
 //!
 //! An export does not certify whole routes. An engine joins edges and turns that are each safe by themselves; only `netcert
 //! route` certifies the whole.

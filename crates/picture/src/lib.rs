@@ -11,6 +11,7 @@
 //! | `style` | appearance of shapes and texts |
 //! | `view` | from metres (x east, y north) to the page |
 //! | `palette` | colours, and colour scales for numbers |
+//! | `lengths` | lengths in words, in metres or in feet and inches |
 //! | `furniture` | dimension lines, arrows, scale bar, legend |
 //! | `chart` | a curve over an axis |
 //! | `bodies` | a vehicle from above |

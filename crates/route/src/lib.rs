@@ -16,7 +16,7 @@
 //! | `snap` | the nearest point on a road to a place |
 //! | `pieces` | strokes and turns, the pieces of a corridor |
 //! | `turning` | turns that are made when a route needs them |
-//! | `assemble`, `blend` | one corridor from pieces |
+//! | `assemble`, `blend`, `grounds` | one corridor from pieces, with the areas of their turns |
 //! | `whole` | the certificate of a whole way, and where it fails |
 //! | `route` | a certified route, and its parts |
 //! | `title` | titles and places of edges, turns and passages |

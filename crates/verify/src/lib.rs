@@ -1,6 +1,6 @@
 //! Checks a whole database: its records, what of the register counts, and each certificate, by the independent checker.
 //!
-//! [`crate::check`] decides. This module reads what it is told of, and neither uses the prover.
+//! [`crate::check`] decides. The other modules read what it is told of. None of them uses the prover.
 
 use netcert_base::{stop, vehicle, verdict, watch, words};
 use netcert_evidence as evidence;

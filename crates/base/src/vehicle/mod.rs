@@ -8,6 +8,7 @@
 //! | `check` | the bounds of a definition, as faults with a place |
 //! | `collide` | bodies that would overlap, straight or turned |
 //! | `file` | TOML text → vehicles, or every fault with its line |
+//! | `regions` | which vehicles run on the roads of which countries, from `data/regions.toml` |
 //! | `catalogue` | the shipped vehicles, the vehicles of a country, and look-up by id |
 
 mod catalogue;

@@ -7,6 +7,8 @@
 //!
 //! | file | in the paper |
 //! | --- | --- |
+//! | `plane`, `system` | vectors of the plane; Σ, the paper's vehicle |
+//! | `reading` | the print to the letter, or with faults repaired |
 //! | `ellipse` | Def. 1, Eq. 1-2: 𝓔(q, Q), support radius |
 //! | `route` | Def. 2, Eq. 3-4: 𝓡(t), 𝒫_l, 𝒫_r |
 //! | `kinematics` | Def. 4, Eq. 5-8: κ_i, ι_i, Ω, Ξ over sway tuples |

@@ -1,7 +1,7 @@
 //! The certificate (docs/proof.md): nominal motion → tubes → leeway → corrections → RSC.
 //!
-//! The module is pure: it takes a corridor and a vehicle and returns a certificate. It has no input or output, no clock
-//! and no threads.
+//! The module is pure: it takes a corridor and a vehicle and returns a certificate. It has no input or output, no threads,
+//! and no clock but that of the guard ([`netcert_base::watch`]).
 
 mod adjoint;
 mod areas;

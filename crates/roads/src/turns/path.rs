@@ -1,7 +1,7 @@
 //! Reference paths of a turn: from one pose to another by transition, arc and transition. If the lanes only shift, the
 //! path is a curve of minimal jerk.
 //!
-//! Every path is tangent to both centrelines and has zero curvature at its ends. `rank` and the certificate judge the
+//! Every path is tangent to both centrelines and has zero curvature at its ends. The planner and the certificate judge the
 //! paths.
 
 /// A place, and the heading there in radians from x towards y.

@@ -10,6 +10,7 @@
 //! | --- | --- |
 //! | `file`, `document`, `members` | certificate files |
 //! | `database`, `turns`, `row_claim` | databases: edges, turns, and the claims of a row |
+//! | `rules` | what a certificate may claim, in files and in databases |
 
 mod database;
 mod document;

@@ -5,11 +5,13 @@
 //!
 //! | file | for |
 //! | --- | --- |
+//! | `tags` | the tags of an object that may be rules |
 //! | `rule` | a tag as a rule: whom it concerns, what it says |
 //! | `condition`, `hours` | conditions and their times |
 //! | `property` | what is compared of a vehicle |
 //! | `set` | the rules of a direction as they are kept and stored |
 //! | `named` | the tag behind a plain limit, access or a barrier |
+//! | `subject` | for whom and when a rule is judged |
 //! | `judge`, `outcomes` | rules and a vehicle make a verdict |
 
 mod condition;
