@@ -15,7 +15,8 @@
 //! | `reuse`, `amendment` | what stands of an earlier database, and the rows of it that change in place |
 //! | `tasks`, `task_results` | a region as tasks of other machines, and what these made |
 //! | `certifier` | the certificates of a new database, portion by portion |
-//! | `new_database` | the stages in their order |
+//! | `new_database` | what a database is made from |
+//! | `steps` | the stages in their order |
 //! | `ingest`, `assemble`, `update` | a database from an extract, from results of tasks, and from newer data |
 //! | `replacement`, `evidence` | new certificates and measurements in an existing database |
 
@@ -48,6 +49,7 @@ mod roads;
 mod select;
 mod share;
 mod source;
+mod steps;
 mod summary;
 mod task_results;
 mod tasks;
