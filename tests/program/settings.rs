@@ -17,6 +17,7 @@ use serde_json::Value;
 use crate::serve::http::Server;
 use netcert_testing::catalogue::catalogued;
 use netcert_testing::program::WorkFolder;
+use netcert_testing::thorough::cases;
 
 const VEHICLE: &str = "AU-SEMI19";
 /// What the database is ingested with.
@@ -166,7 +167,10 @@ fn a_set_made_with_another_shift_is_computed_by_it() {
 
 #[test]
 fn a_set_made_with_other_tolerances_is_computed_by_them() {
-    is_as_if_ingested_with("--map-tolerance 0 --smoothing-tolerance 1.5", Policy::Carriageway);
+    let alone = &["--map-tolerance 0", "--smoothing-tolerance 1.5"][..];
+    for option in cases(&["--map-tolerance 0 --smoothing-tolerance 1.5"][..], alone) {
+        is_as_if_ingested_with(option, Policy::Carriageway);
+    }
 }
 
 #[test]
