@@ -52,7 +52,7 @@ pub(crate) struct Ingest {
     /// How many directed edges to certify at a time. Fewer take less memory, more take less time; certificates are the same.
     #[arg(long, value_name = "N", help_heading = "Memory", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
     edges_at_once: u64,
-    /// Print how much work the turns took, too: paths scored, sweeps, distances. It does not depend on the machine.
+    /// Print how much work the turns took, too: paths scored, sweeps and distances for each turn. These numbers are the same on every machine.
     #[arg(long)]
     stats: bool,
 }

@@ -1,13 +1,13 @@
-//! Counted work: how often certificates did what takes their time, whatever the machine's speed.
+//! WorkKind work: how often certificates did what takes their time, whatever the machine's speed.
 //!
-//! Work is counted on the thread that does it. [`counted`] tells what a piece of work on one thread took.
+//! Work is counted on the thread that does it. [`counted`] returns what a piece of work took on its thread.
 
 use std::cell::Cell;
 use std::ops::AddAssign;
 
-/// What is counted.
+/// The kinds of work that are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Counted {
+pub enum WorkKind {
     /// A path that the planner scored: a vehicle follows it, and its bodies are held against a field of distances.
     Score,
     /// A sweep of a vehicle along a path.
@@ -19,11 +19,11 @@ pub enum Counted {
 /// How often each kind of work was done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct WorkCount {
-    /// [`Counted::Score`].
+    /// [`WorkKind::Score`].
     pub scores: u64,
-    /// [`Counted::Sweep`].
+    /// [`WorkKind::Sweep`].
     pub sweeps: u64,
-    /// [`Counted::Distance`].
+    /// [`WorkKind::Distance`].
     pub distances: u64,
 }
 
@@ -43,12 +43,12 @@ thread_local! {
 
 /// Counts work on this thread.
 #[inline]
-pub fn count(what: Counted, times: u64) {
+pub fn count(what: WorkKind, times: u64) {
     let add = |count: &Cell<u64>| count.set(count.get() + times);
     match what {
-        Counted::Score => SCORES.with(add),
-        Counted::Sweep => SWEEPS.with(add),
-        Counted::Distance => DISTANCES.with(add),
+        WorkKind::Score => SCORES.with(add),
+        WorkKind::Sweep => SWEEPS.with(add),
+        WorkKind::Distance => DISTANCES.with(add),
     }
 }
 
@@ -68,10 +68,10 @@ mod tests {
 
     #[test]
     fn work_is_counted_between_begin_and_end() {
-        count(Counted::Sweep, 5);
+        count(WorkKind::Sweep, 5);
         let (result, work) = counted(|| {
-            count(Counted::Sweep, 2);
-            count(Counted::Distance, 7);
+            count(WorkKind::Sweep, 2);
+            count(WorkKind::Distance, 7);
             "done"
         });
         assert_eq!((result, work), ("done", WorkCount { scores: 0, sweeps: 2, distances: 7 }));

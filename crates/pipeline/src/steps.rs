@@ -33,7 +33,7 @@ impl<'a> NewDatabase<'a> {
         mut results: Option<Results<'_>>,
         reporter: &'a dyn Reporter,
     ) -> Result<Made, RunError> {
-        let mut steps = Steps::begin(self, whom, results.is_some(), reporter)?;
+        let mut steps = DatabaseSteps::begin(self, whom, results.is_some(), reporter)?;
         let checkpoint = steps.checkpoint(results.as_mut())?;
         match steps.amend(checkpoint)? {
             ControlFlow::Break(made) => Ok(made),
@@ -45,35 +45,35 @@ impl<'a> NewDatabase<'a> {
 }
 
 /// The steps by which a database is made, in the order in which they are taken.
-struct Steps<'a, 'e> {
+struct DatabaseSteps<'a, 'e> {
     ask: NewDatabase<'a>,
     reporter: &'a dyn Reporter,
     started: String,
     summary: Summary,
     writer: Writer,
     register: Option<Register>,
-    measured: Measured,
+    measured: CarriedOver,
     roads: Roads<'a>,
     origin: Origin,
-    vehicles: Vehicles<'e>,
+    vehicles: RunVehicles<'e>,
 }
 
 /// The vehicles, and what an earlier database has of them.
-struct Vehicles<'e> {
+struct RunVehicles<'e> {
     models: Vec<Model>,
     stored: Option<Stored<'e>>,
     /// Turns of the roads, where an earlier database is read.
     facts: Vec<TurnFacts>,
 }
 
-/// Measurements that an older file had.
+/// What was carried over of the measurements of an older file.
 #[derive(Default)]
-struct Measured {
+struct CarriedOver {
     entries: Option<usize>,
     account: Vec<AccountRow>,
 }
 
-impl<'a, 'e> Steps<'a, 'e> {
+impl<'a, 'e> DatabaseSteps<'a, 'e> {
     /// The file, the roads and the vehicles. The file is created first, so that a path that cannot be written is reported before the work.
     fn begin(
         ask: NewDatabase<'a>,
@@ -103,7 +103,7 @@ impl<'a, 'e> Steps<'a, 'e> {
             Whom::Chosen(choose) => {
                 let (roads, origin) = read()?;
                 let models = choose(&roads.countries())?;
-                (roads, origin, Vehicles { models, stored: None, facts: Vec::new() })
+                (roads, origin, RunVehicles { models, stored: None, facts: Vec::new() })
             }
             Whom::Earlier(older, models) => with_earlier(&ask, older, models, read, reporter)?,
         };
@@ -112,7 +112,7 @@ impl<'a, 'e> Steps<'a, 'e> {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
         }
-        let measured = Measured::default();
+        let measured = CarriedOver::default();
         Ok(Self { ask, reporter, started, summary, writer, register, measured, roads, origin, vehicles })
     }
 
@@ -127,7 +127,7 @@ impl<'a, 'e> Steps<'a, 'e> {
         if let (Some(register), Some(network)) = (self.register.take(), self.roads.whole()) {
             identity.add(&format!("{register:?}"));
             let (register, account) = evidence::carried_over(network, register, self.reporter);
-            self.measured = Measured { entries: Some(register.entries.len()), account };
+            self.measured = CarriedOver { entries: Some(register.entries.len()), account };
             self.writer.evidence(register);
         }
         for model in &self.vehicles.models {
@@ -151,7 +151,7 @@ impl<'a, 'e> Steps<'a, 'e> {
 
     /// Changes the rows of the earlier database in place, if so few differ that this is possible.
     fn amend(mut self, checkpoint: Checkpoint) -> Result<ControlFlow<Made, (Self, Checkpoint)>, RunError> {
-        let Vehicles { models, stored, facts } = &mut self.vehicles;
+        let RunVehicles { models, stored, facts } = &mut self.vehicles;
         let (true, Some(stored), Some(portion)) = (checkpoint.is_empty(), stored, self.roads.only()) else {
             return Ok(ControlFlow::Continue((self, checkpoint)));
         };
@@ -181,7 +181,7 @@ impl<'a, 'e> Steps<'a, 'e> {
     fn certify(self, mut checkpoint: Checkpoint, failed: Option<&BTreeSet<PartOfWork>>) -> Result<Made, RunError> {
         let Self { mut ask, reporter, started, mut summary, mut writer, measured, mut roads, origin, vehicles, .. } =
             self;
-        let Vehicles { models, stored, .. } = vehicles;
+        let RunVehicles { models, stored, .. } = vehicles;
         let earlier = match (stored, roads.whole()) {
             (Some(stored), Some(network)) => {
                 let found = Earlier::find(stored, network, ask.settings)?;
@@ -238,7 +238,7 @@ fn with_earlier<'a, 'e>(
     models: Vec<Model>,
     read: impl FnOnce() -> Result<(Roads<'a>, Origin), RunError>,
     reporter: &dyn Reporter,
-) -> Result<(Roads<'a>, Origin, Vehicles<'e>), RunError> {
+) -> Result<(Roads<'a>, Origin, RunVehicles<'e>), RunError> {
     let read = || {
         let (roads, origin) = read()?;
         let network = roads.only().filter(|_| ask.settings.turns).map(|portion| &portion.network);
@@ -247,5 +247,5 @@ fn with_earlier<'a, 'e>(
     };
     let (read, stored) = ask.beside(older, &models, read, reporter)?;
     let (roads, origin, facts) = read?;
-    Ok((roads, origin, Vehicles { models, stored, facts }))
+    Ok((roads, origin, RunVehicles { models, stored, facts }))
 }

@@ -19,7 +19,7 @@ use super::model::MAX_UNITS;
 use super::ride::{Refining, Ride};
 use super::spans;
 use super::steer::SteerPaths;
-use netcert_base::counted::{Counted, count};
+use netcert_base::counted::{WorkKind, count};
 use netcert_base::stop::Stop;
 use netcert_base::watch;
 
@@ -86,7 +86,7 @@ fn sweep_lanes<const CERTIFY: bool, const REFINE: bool>(
     hopeless: Option<f64>,
     stop: &Stop,
 ) -> Vec<Minima> {
-    count(Counted::Sweep, rides.len() as u64);
+    count(WorkKind::Sweep, rides.len() as u64);
     SCRATCH.with_borrow_mut(|scratch| on_widest!(V => sweep_with::<V, CERTIFY, REFINE>(scratch, rides, hopeless, stop)))
 }
 

@@ -1,7 +1,7 @@
 //! The room that an area leaves: distances to its boundary, found through a grid of cells.
 
 use netcert_base::corridor::Area;
-use netcert_base::counted::{Counted, count};
+use netcert_base::counted::{WorkKind, count};
 use netcert_base::watch;
 
 /// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
@@ -264,7 +264,7 @@ impl Ground {
 
     /// Room of a place, and the nearest segment: `None` for a place inside that is farther than [`FAR_M`] from all of them.
     fn room_and_nearest(&self, p: Point) -> (f64, Option<u32>) {
-        count(Counted::Distance, 1);
+        count(WorkKind::Distance, 1);
         let near = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p);
         let far = near.0.sqrt();
         match self.contains(p) {
@@ -301,7 +301,7 @@ impl Ground {
     /// stations; the leeway is less by what the piece may move towards each segment. Neither is too great. Both are negative where
     /// the hull is not inside.
     pub(in crate::stet) fn swept(&self, piece: &SweptPiece<'_>) -> (f64, f64) {
-        count(Counted::Distance, 1);
+        count(WorkKind::Distance, 1);
         let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
         let outside = || {
             let depth = self.depth(piece);

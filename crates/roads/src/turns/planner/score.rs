@@ -4,7 +4,7 @@
 use super::field::Field;
 use crate::turns::corridors::TurnCorridors;
 use crate::vehicle::{Unit, Vehicle};
-use netcert_base::counted::{Counted, count};
+use netcert_base::counted::{WorkKind, count};
 
 /// Estimated deviation of the first unit from its nominal place, and how much more each further unit deviates, metres.
 const TUBE_M: [f64; 2] = [0.09, 0.03];
@@ -80,7 +80,7 @@ impl<'a> Scorer<'a> {
     /// The score of the path with a code, from moments about `step_m` apart. `None` if it is not above `floor_m`, or if the turn has no such
     /// path.
     pub(super) fn score(&mut self, field: &mut Field, code: i64, step_m: f64, floor_m: f64) -> Option<Score> {
-        count(Counted::Score, 1);
+        count(WorkKind::Score, 1);
         let line = self.made.line(code, step_m)?;
         let (units, to) = (&self.vehicle.units, self.made.arms()[1]);
         let [leave, join] = line.joints;
