@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::regions::Regions;
-use super::{Fault, Vehicle, file};
+use super::{Fault, Vehicle, VehicleError, file};
 
 /// The catalogue that ships.
 const BUILTIN: &str = include_str!("../../../../data/vehicles.toml");
@@ -15,55 +15,6 @@ const BUILTIN_NAME: &str = "data/vehicles.toml";
 const MAX_FILE_BYTES: u64 = 4 << 20;
 /// Longer texts are compared by their first characters.
 const MAX_COMPARED: usize = 100;
-
-/// Why a vehicle or a vehicle file cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum VehicleError {
-    /// The file cannot be read.
-    #[error("{file}: cannot read the vehicle file: {cause}")]
-    Unreadable {
-        /// Path as given.
-        file: String,
-        /// The system's reason.
-        cause: std::io::Error,
-    },
-    /// The file was read and is wrong.
-    #[error("{file}: refused{}", listed(.faults))]
-    Refused {
-        /// Path as given.
-        file: String,
-        /// All faults in file order; never empty.
-        faults: Vec<Fault>,
-    },
-    /// No vehicle of that id.
-    #[error("no vehicle {id:?} in the catalogue{}; `netcert vehicles list` shows all", meant(.nearest))]
-    Unknown {
-        /// Id as asked for.
-        id: String,
-        /// The most similar ids, best first; may be empty.
-        nearest: Vec<String>,
-    },
-    /// Two sources define the same id.
-    #[error("{file}: vehicle {id:?} is already in the catalogue; give yours another id")]
-    Clash {
-        /// The later source.
-        file: String,
-        /// The id.
-        id: String,
-    },
-}
-
-fn listed(faults: &[Fault]) -> String {
-    match faults {
-        [one] => format!(": {one}"),
-        many => many.iter().map(|fault| format!("\n  {fault}")).collect(),
-    }
-}
-
-fn meant(nearest: &[String]) -> String {
-    if nearest.is_empty() { String::new() } else { format!("; did you mean {}?", nearest.join(", ")) }
-}
 
 /// Vehicles in file order, with distinct ids.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -3,35 +3,10 @@
 //! The bounds keep out typing errors (a shifted decimal point, degrees for radians) and values that the kinematics
 //! cannot handle. They do not say that a vehicle is legal anywhere. All faults are collected.
 
-use std::fmt;
-
 use super::class::Classes;
 use super::collide::{self, Clash, Ends};
 use super::definition::{VehicleDefinition, closure_m};
-use super::{Unit, Vehicle};
-
-/// One fault of a vehicle file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    /// Line in the file, from 1, if known.
-    pub line: Option<usize>,
-    /// `vehicle "id", unit 2 "dolly", width_m`, or empty.
-    pub place: String,
-    /// The fault and the bound that it breaks.
-    pub problem: String,
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(line) = self.line {
-            write!(f, "line {line}: ")?;
-        }
-        if !self.place.is_empty() {
-            write!(f, "{}: ", self.place)?;
-        }
-        f.write_str(&self.problem)
-    }
-}
+use super::{Fault, Unit, Vehicle};
 
 /// A field of a file: vehicle, unit (if the field is a unit's), field name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

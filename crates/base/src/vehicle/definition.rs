@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Unit, Vehicle, VehicleError, check, defaults};
+use super::{Unit, Vehicle, defaults};
 
 /// `[[vehicle]]` of a vehicle file. Only `id` and the units are required.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -165,19 +165,6 @@ impl Vehicle {
     /// None for a vehicle that passed the checks; otherwise serde_json's.
     pub fn to_json(&self) -> Result<serde_json::Value, serde_json::Error> {
         serde_json::to_value(self.definition())
-    }
-
-    /// Reads a vehicle from its definition in JSON, with the checks of a file.
-    ///
-    /// # Errors
-    /// [`VehicleError::Refused`] with field and bound, and with the line of a syntax error.
-    pub fn from_json(json: &str) -> Result<Self, VehicleError> {
-        let refused = |faults| VehicleError::Refused { file: "vehicle definition".into(), faults };
-        let definition: VehicleDefinition = serde_json::from_str(json).map_err(|e| {
-            refused(vec![check::Fault { line: Some(e.line()), place: String::new(), problem: e.to_string() }])
-        })?;
-        let faults = check::faults(std::slice::from_ref(&definition), &|_| None);
-        if faults.is_empty() { Ok(definition.vehicle()) } else { Err(refused(faults)) }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Reads TOML text into vehicles, or into all its faults with their lines.
+//! Reads TOML or JSON text into vehicles, or into all its faults with their lines.
 //!
 //! Unknown fields are refused: a misspelt `width_n` would otherwise put a default into a certificate.
 
@@ -6,9 +6,9 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::Vehicle;
-use super::check::{Fault, FieldPath, faults, warnings};
+use super::check::{FieldPath, faults, warnings};
 use super::definition::VehicleDefinition;
+use super::{Fault, Vehicle, VehicleError};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,4 +51,18 @@ fn offset(tree: &Spanned<DeTable<'_>>, path: FieldPath) -> Option<usize> {
 /// Line of a byte offset, from 1.
 fn line_at(text: &str, offset: usize) -> usize {
     1 + text.bytes().take(offset).filter(|&b| b == b'\n').count()
+}
+
+impl Vehicle {
+    /// Reads a vehicle from its definition in JSON, with the checks of a file.
+    ///
+    /// # Errors
+    /// [`VehicleError::Refused`] with field and bound, and with the line of a syntax error.
+    pub fn from_json(json: &str) -> Result<Self, VehicleError> {
+        let refused = |faults| VehicleError::Refused { file: "vehicle definition".into(), faults };
+        let definition: VehicleDefinition = serde_json::from_str(json)
+            .map_err(|e| refused(vec![Fault { line: Some(e.line()), place: String::new(), problem: e.to_string() }]))?;
+        let faults = faults(std::slice::from_ref(&definition), &|_| None);
+        if faults.is_empty() { Ok(definition.vehicle()) } else { Err(refused(faults)) }
+    }
 }

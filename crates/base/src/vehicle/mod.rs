@@ -6,9 +6,10 @@
 //! | `defaults` | default values of fields that a definition leaves out, and their reasons |
 //! | `class` | which rules of the road mean a vehicle; trailers and axles |
 //! | `check` | the bounds of a definition, as faults with a place |
+//! | `error` | why a vehicle or a file is refused, and the faults of a file |
 //! | `collide` | bodies that would overlap, straight or turned |
-//! | `file` | TOML text → vehicles, or every fault with its line |
 //! | `regions` | which vehicles run on the roads of which countries, from `data/regions.toml` |
+//! | `file` | TOML or JSON text → vehicles, or every fault with its line |
 //! | `catalogue` | the shipped vehicles, the vehicles of a country, and look-up by id |
 
 mod catalogue;
@@ -17,6 +18,7 @@ mod class;
 mod collide;
 mod defaults;
 mod definition;
+mod error;
 mod file;
 mod regions;
 #[cfg(test)]
@@ -24,10 +26,10 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-pub use catalogue::{Catalogue, VehicleError};
-pub use check::Fault;
+pub use catalogue::Catalogue;
 pub use class::{Class, Classes, EVERYBODY, Member};
 pub use definition::{UnitDefinition, VehicleDefinition};
+pub use error::{Fault, VehicleError};
 pub use regions::{Region, Regions};
 
 /// One unit of the chain, in metres and radians. A dolly is a unit of its own.
