@@ -11,6 +11,7 @@
 
 mod locations;
 mod segment;
+mod stretch;
 mod values;
 
 use std::collections::BTreeMap;
@@ -25,7 +26,8 @@ use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use crate::{Destination, ExportError, Layout, Sink, Source};
 use locations::{EdgeLocation, EdgeLocations};
-use segment::{Segment, SegmentStretch};
+use segment::Segment;
+use stretch::SegmentStretch;
 
 /// `overture`
 pub(super) struct Overture;
@@ -190,7 +192,7 @@ impl Writer<'_, '_> {
     }
 
     /// The prohibited sequences after a permitted edge that ends at the node `end`.
-    fn forbidden(&mut self, edge: EdgeNo, end: NodeId) -> Result<Vec<segment::Forbidden>, ExportError> {
+    fn forbidden(&mut self, edge: EdgeNo, end: NodeId) -> Result<Vec<stretch::Forbidden>, ExportError> {
         let mut out = Vec::new();
         for sequence in self.transitions.of(edge)? {
             let mut via = end;
@@ -200,7 +202,7 @@ impl Writer<'_, '_> {
                 steps.push((via, segment::id(way_id, chain), heading));
                 via = end;
             }
-            out.push(segment::Forbidden { steps });
+            out.push(stretch::Forbidden { steps });
         }
         Ok(out)
     }

@@ -7,7 +7,8 @@ use geo::{Distance as _, Geodesic, Point};
 use serde_json::{Map, Value, json};
 
 use super::locations::EdgeLocation;
-use super::values::{self, Values};
+use super::stretch::{SegmentStretch, between};
+use super::values;
 use crate::osm::facts::Direction;
 use crate::osm::{LonLat, NodeId};
 use crate::rows::{EdgeRow, RoadName};
@@ -16,37 +17,6 @@ use crate::words::Named as _;
 /// The vehicles that the rules apply to.
 pub(super) struct Scope {
     pub(super) length_m: f64,
-}
-
-/// A prohibited sequence: for each step the node, the segment and the heading on it.
-pub(super) struct Forbidden {
-    pub(super) steps: Vec<(NodeId, String, Direction)>,
-}
-
-/// A stretch between two junctions.
-pub(super) struct SegmentStretch {
-    pub(super) shape_start: u32,
-    /// The end nodes, in way order.
-    nodes: [NodeId; 2],
-    /// The line, in way order.
-    line: Vec<LonLat>,
-    /// What the map says of it.
-    pub(super) values: Values,
-    /// By heading: the prohibited sequences after it. `None` if the stretch may not be used in this heading.
-    pub(super) permitted: [Option<Vec<Forbidden>>; 2],
-}
-
-impl SegmentStretch {
-    /// A stretch made from the first of its edges. Nothing is permitted yet.
-    pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
-        let mut line = row.line.clone();
-        let mut nodes = [row.edge.from_node, row.edge.to_node];
-        if location.heading == Direction::Backward {
-            line.reverse();
-            nodes.reverse();
-        }
-        Self { shape_start: location.shape_start, nodes, line, values: Values::default(), permitted: [None, None] }
-    }
 }
 
 /// A way, or a part of it without a gap in the extract.
@@ -238,17 +208,6 @@ impl Scope {
     }
 }
 
-/// Adds the range of a rule. The range is left out if it is the whole segment, or if rounding makes it empty; the rule then holds
-/// for the whole segment.
-pub(super) fn between(rule: &mut Map<String, Value>, at: &[f64], [from, to]: [usize; 2]) {
-    if let (Some(&from), Some(&to)) = (at.get(from), at.get(to))
-        && from < to
-        && (from > 0.0 || to < 1.0)
-    {
-        rule.insert("between".to_owned(), json!([from, to]));
-    }
-}
-
 fn length_m(line: &[LonLat]) -> f64 {
     let point = |place: &LonLat| Point::from(place.degrees());
     line.windows(2).map(|pair| Geodesic.distance(point(&pair[0]), point(&pair[1]))).sum()
@@ -256,6 +215,7 @@ fn length_m(line: &[LonLat]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::stretch::Values;
     use super::*;
 
     fn stretch(from: i32, to: i32, permitted: [bool; 2]) -> SegmentStretch {

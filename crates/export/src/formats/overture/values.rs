@@ -2,35 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::segment::{SegmentStretch, between};
-use crate::osm::facts::{Direction, Policy, WidthSource};
-use crate::rows::EdgeRow;
+use super::stretch::{SegmentStretch, Values, between};
+use crate::osm::facts::Direction;
 use crate::words::Named as _;
-
-/// Values of a stretch, which its edges have.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Values {
-    /// By heading: whether the direction of travel exists.
-    pub(super) exists: [bool; 2],
-    /// By heading, km/h.
-    pub(super) speed_km_h: [Option<u8>; 2],
-    /// The mapped width of the carriageway, metres.
-    pub(super) width_m: Option<f64>,
-}
-
-impl Values {
-    /// Takes the values of an edge. `carriageway`: its width is that of the whole carriageway.
-    pub(super) fn take(&mut self, row: &EdgeRow, heading: Direction, policy: Policy) {
-        self.exists[heading as usize] = true;
-        self.speed_km_h[heading as usize] = row.maxspeed_kmh;
-        // A width that is assumed or estimated would come back as mapped.
-        let mapped = matches!(row.width_source, Some(WidthSource::Tagged | WidthSource::Surveyed));
-        if let Some(width_m) = row.width_m.filter(|_| policy == Policy::Carriageway && mapped) {
-            let width_m = (width_m * 1000.0).floor() / 1000.0;
-            self.width_m = Some(self.width_m.map_or(width_m, |known| known.min(width_m)));
-        }
-    }
-}
 
 /// Neighbouring stretches with the same value, as first and last junction.
 fn ranges<T: PartialEq>(stretches: &[SegmentStretch], value: impl Fn(&Values) -> Option<T>) -> Vec<([usize; 2], T)> {
