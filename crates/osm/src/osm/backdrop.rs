@@ -7,9 +7,8 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use super::changes::Kind;
-use super::extract::LonLat;
 use super::facts::BackdropKind;
-use crate::osm::NodeId;
+use crate::osm::{LonLat, NodeId};
 
 /// A thing behind the roads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,31 +3,9 @@
 use std::ops::Range;
 
 use super::backdrop::Backdrop;
-use crate::osm::NodeId;
+use super::read_account::ReadAccount;
 use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
-
-/// A position on WGS 84 in units of 1e-7 degree, the file's own resolution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub struct LonLat {
-    /// Longitude, 1e-7 degree, −180°..=180°.
-    pub lon_e7: i32,
-    /// Latitude, 1e-7 degree, −90°..=90°.
-    pub lat_e7: i32,
-}
-
-impl LonLat {
-    /// Longitude and latitude in degrees.
-    #[must_use]
-    pub fn degrees(self) -> (f64, f64) {
-        (f64::from(self.lon_e7) * 1e-7, f64::from(self.lat_e7) * 1e-7)
-    }
-}
-
-/// Rounds longitude and latitude in degrees to the map's precision, 1e-7 degree (about a centimetre).
-#[must_use]
-pub fn rounded(degrees: [f64; 2]) -> [f64; 2] {
-    degrees.map(|degrees| (degrees * 1e7).round() / 1e7)
-}
+use crate::osm::{LonLat, NodeId, StringPool};
 
 /// A drivable way: its facts, and its node references in [`Extract::refs`]. There are at least two references, and
 /// consecutive ones differ.
@@ -100,55 +78,6 @@ impl NodeTable {
     }
 }
 
-/// An interned string (names, refs) of a [`StringPool`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
-pub struct StringId(pub u32);
-
-/// Interned strings. The same text has the same id, and ids follow first use in way order.
-#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-#[serde(from = "Vec<Box<str>>", into = "Vec<Box<str>>")]
-pub struct StringPool {
-    texts: Vec<Box<str>>,
-    ids: rustc_hash::FxHashMap<Box<str>, u32>,
-}
-
-impl From<Vec<Box<str>>> for StringPool {
-    fn from(texts: Vec<Box<str>>) -> Self {
-        let ids = texts.iter().cloned().zip(0..).collect();
-        Self { texts, ids }
-    }
-}
-
-impl From<StringPool> for Vec<Box<str>> {
-    fn from(pool: StringPool) -> Self {
-        pool.texts
-    }
-}
-
-impl StringPool {
-    /// The id of `text`, which is added if it is new.
-    pub fn intern(&mut self, text: &str) -> StringId {
-        if let Some(&id) = self.ids.get(text) {
-            return StringId(id);
-        }
-        let id = self.texts.len() as u32;
-        self.texts.push(text.into());
-        self.ids.insert(text.into(), id);
-        StringId(id)
-    }
-
-    /// All texts, in the order of their ids.
-    pub fn texts(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.texts.iter().map(|text| &**text)
-    }
-
-    /// The text of an id of this pool.
-    #[must_use]
-    pub fn text(&self, id: StringId) -> &str {
-        &self.texts[id.0 as usize]
-    }
-}
-
 /// The data read from an extract.
 #[derive(Debug, Clone, Default)]
 pub struct Extract {
@@ -169,5 +98,5 @@ pub struct Extract {
     /// Names and refs of the ways.
     pub strings: StringPool,
     /// The account of everything read: how many ways were left out, by reason.
-    pub account: crate::osm::pbf::ReadAccount,
+    pub account: ReadAccount,
 }

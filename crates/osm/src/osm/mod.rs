@@ -8,9 +8,14 @@ mod backdrop;
 pub mod changes;
 mod extract;
 pub mod facts;
+mod lon_lat;
 mod node_id;
 pub mod pbf;
+mod read_account;
+mod strings;
 
 pub use backdrop::{Backdrop, BackdropShape};
-pub use extract::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringId, StringPool, Via, Way, rounded};
+pub use extract::{Extract, NodeTable, Restriction, RoadArea, Via, Way};
+pub use lon_lat::{LonLat, rounded};
 pub use node_id::NodeId;
+pub use strings::{StringId, StringPool};

@@ -5,8 +5,7 @@
 
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section::{LANE_STEP_M, LISTED, LaneTags};
-use crate::osm::facts::section_reader::readable;
-use crate::osm::facts::value;
+use crate::osm::facts::value::{self, readable};
 use crate::osm::facts::widths::LANE_M;
 
 /// Lane lists of one direction, before their direction is known.

@@ -4,12 +4,10 @@
 //! traffic" at most; the rules beside it decide ([`super::legal`]).
 
 use crate::osm::facts::access::{Access, is_access_key, permission};
-use crate::osm::facts::legal::{REMARKS, RuleTags};
+use crate::osm::facts::legal::RuleTags;
+use crate::osm::facts::limit_kind::Kind;
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::{Direction, Legal, Limit, Oneway, Permission, value};
-
-/// Tolerance of comparisons, as in [`super::legal`].
-const SLACK: f64 = 1e-3;
+use crate::osm::facts::{Direction, Legal, Limit, Oneway, Permission};
 
 impl Limit {
     /// The stricter of two limits. An unreadable limit may be stricter than any number.
@@ -19,107 +17,6 @@ impl Limit {
             (Limit::Unreadable, _) | (_, Limit::Unreadable) => Limit::Unreadable,
             (Limit::None, limit) | (limit, Limit::None) => limit,
             (Limit::At(a), Limit::At(b)) => Limit::At(a.min(b)),
-        }
-    }
-}
-
-/// The quantity that a limit bounds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Height, metres.
-    Height,
-    /// Gross mass of the combination, tonnes.
-    Weight,
-    /// Axle load, tonnes.
-    AxleLoad,
-    /// Length, metres.
-    Length,
-    /// Width, metres.
-    Width,
-}
-
-impl Kind {
-    fn of_key(head: &str) -> Option<Kind> {
-        Some(match head {
-            "maxheight" => Kind::Height,
-            "maxweight" | "maxweightrating" | "maxgcweight" | "maxgcweightrating" => Kind::Weight,
-            "maxaxleload" => Kind::AxleLoad,
-            "maxlength" => Kind::Length,
-            "maxwidth" => Kind::Width,
-            _ => return None,
-        })
-    }
-
-    /// The kind of a tag that is a limit of the whole road at all times. The key may name a class or a direction, too, before or after:
-    /// `maxheight`, `maxweight:hgv`, `hgv:maxweight:forward`. Lists by lane, conditions and remarks (`source:maxheight`) are none.
-    #[must_use]
-    pub fn of_tag(key: &str) -> Option<Kind> {
-        let other = |part: &str| matches!(part, "lanes" | "conditional") || REMARKS.contains(&part);
-        if !key.contains("max") || key.split(':').any(other) {
-            return None;
-        }
-        key.split(':').find_map(Kind::of_key)
-    }
-
-    /// The kind of a word in a condition, as in `no @ (weight>7.5)`.
-    fn of_condition(word: &str) -> Option<Kind> {
-        Some(match word {
-            "height" => Kind::Height,
-            "weight" | "weightrating" | "maxweight" | "maxweightrating" | "gcweight" | "gcweightrating" => Kind::Weight,
-            "axleload" => Kind::AxleLoad,
-            "length" => Kind::Length,
-            "width" => Kind::Width,
-            _ => return None,
-        })
-    }
-
-    /// The greatest value that a sign shows. Greater ones are refused, because their unit is missing (kilograms, centimetres).
-    fn greatest(self) -> f32 {
-        match self {
-            Kind::Height => 15.0,
-            Kind::Weight => 500.0,
-            Kind::AxleLoad => 60.0,
-            Kind::Length => 150.0,
-            Kind::Width => 30.0,
-        }
-    }
-
-    /// What a tag's value says, in metres or tonnes.
-    #[must_use]
-    pub fn read(self, text: &str) -> Limit {
-        let number = match self {
-            Kind::Weight | Kind::AxleLoad => value::tonnes,
-            Kind::Height | Kind::Length | Kind::Width => value::metres,
-        };
-        value::limit(text, number, self.greatest())
-    }
-
-    /// A limit of metres or tonnes, under the same bounds as a tag.
-    #[must_use]
-    pub fn at(self, value: f64) -> Limit {
-        let most = value as f32;
-        if most > 0.0 && most <= self.greatest() { Limit::At(most) } else { Limit::Unreadable }
-    }
-
-    /// A limit that bars sizes from this one on, where [`Self::at`] bars greater ones only.
-    #[must_use]
-    pub fn below(self, value: f64) -> Limit {
-        self.at(value - 2.0 * SLACK)
-    }
-
-    /// Adds a limit of this kind. The stricter one counts.
-    pub fn add(self, legal: &mut Legal, limit: Limit) {
-        let slot = self.slot(legal);
-        *slot = slot.stricter(limit);
-    }
-
-    fn slot(self, legal: &mut Legal) -> &mut Limit {
-        match self {
-            Kind::Height => &mut legal.max_height,
-            Kind::Weight => &mut legal.max_weight,
-            Kind::AxleLoad => &mut legal.max_axle_load,
-            Kind::Length => &mut legal.max_length,
-            Kind::Width => &mut legal.max_width,
         }
     }
 }

@@ -1,14 +1,12 @@
 //! Nodes on roads: barriers, narrow places and limits at a point. The network passes them to the edges on both sides.
 
+use crate::osm::facts::keys::PASSAGE_KEYS;
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
 use crate::osm::facts::{Direction, Limit, Oneway, PointFacts, Tags, told, value};
 
 /// Passable width of a choker or chicane without a tagged width, metres: one lane of a minor main road. Assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
-
-/// Keys that say how wide the passage at a node is.
-pub(super) const PASSAGE_KEYS: [&str; 5] = ["est_width", "maxwidth", "maxwidth:physical", "traffic_calming", "width"];
 
 /// Effect of a barrier on a lorry without further tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

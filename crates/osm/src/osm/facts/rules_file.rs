@@ -1,19 +1,51 @@
-//! The file of assumed widths: its form and the bounds of its values. Every group of figures names its sources.
+//! Reads the file of assumed widths: its form and the bounds of its values. Every group of figures names its sources.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde::Deserialize;
 
 use crate::osm::facts::RoadClass;
-use crate::osm::facts::rules::{CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, Rules, country_code};
+use crate::osm::facts::rules::{
+    CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, Rules, RulesError, country_code,
+};
+
+const BUILTIN: &str = include_str!("../../../../../data/roads.toml");
+const BUILTIN_NAME: &str = "data/roads.toml (built in)";
 
 /// Bounds of lanes and of carriageways, metres. Values outside are typing errors.
 const LANE_M: [f32; 2] = [1.8, 6.0];
 const CARRIAGEWAY_M: [f32; 2] = [1.8, 12.0];
 
+impl Rules {
+    /// The built-in rules.
+    ///
+    /// # Errors
+    /// [`RulesError`] if the built-in file is wrong; a test ensures that it is not.
+    pub fn builtin() -> Result<Rules, RulesError> {
+        Self::parse(BUILTIN, BUILTIN_NAME)
+    }
+
+    /// Reads rules from a file with the form of `data/roads.toml`.
+    ///
+    /// # Errors
+    /// [`RulesError`] if the file cannot be read, has another form, or holds a value out of bounds.
+    pub fn from_path(path: &Path) -> Result<Rules, RulesError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| RulesError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    fn parse(text: &str, name: &str) -> Result<Rules, RulesError> {
+        let file: File = toml::from_str(text)
+            .map_err(|source| RulesError::Parse { name: name.to_owned(), source: Box::new(source) })?;
+        file.check().map_err(|what| RulesError::Value { name: name.to_owned(), what })
+    }
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct File {
+struct File {
     source: BTreeMap<String, String>,
     class: BTreeMap<RoadClass, ClassEntry>,
     country: BTreeMap<String, CountryEntry>,
@@ -78,7 +110,7 @@ impl File {
     /// # Errors
     /// A message about the first value out of bounds, figure without a source, or invalid code. It names the entry and
     /// what is allowed.
-    pub(super) fn check(self) -> Result<Rules, String> {
+    fn check(self) -> Result<Rules, String> {
         let classes = self.classes()?;
         let (countries, country_rings) = (self.countries(&classes)?, self.country_rings()?);
         let (ramps_m, kerb) = (self.ramps_m()?, self.kerb()?);
@@ -175,4 +207,53 @@ fn within(value: f32, [low, high]: [f32; 2], of: &str) -> Result<f32, String> {
 
 fn country_of(code: &str, of: &str) -> Result<[u8; 2], String> {
     country_code(code).ok_or_else(|| format!("{of}: not an ISO 3166-1 code of two capitals"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn the_built_in_rules_are_sound() {
+        let rules = Rules::builtin().unwrap();
+        for (class, at) in RoadClass::ALL.into_iter().zip(0..) {
+            assert_eq!(class as usize, at);
+        }
+        assert_eq!(rules.lane_m(RoadClass::Motorway, *b"US"), 3.66);
+        assert_eq!(rules.lane_m(RoadClass::Motorway, *b"ZZ"), rules.class(RoadClass::Motorway).lane_m);
+        assert_eq!(rules.ring_m(*b"DE", Some(15.0)), Some(6.0));
+        for (country, radius_m) in [(*b"DE", Some(8.0)), (*b"DE", None), (*b"FR", Some(15.0))] {
+            assert_eq!(rules.ring_m(country, radius_m), Some(4.3));
+        }
+        assert_eq!((rules.ramp_m(RoadClass::Motorway), rules.ramp_m(RoadClass::Secondary)), (Some(4.2), None));
+        assert!(rules.drives_on_the_left("AU") && rules.drives_on_the_left("US-VI") && !rules.drives_on_the_left("DE"));
+    }
+
+    #[test]
+    fn a_wrong_file_is_refused_with_the_entry_and_the_bound() {
+        for (from, to, said) in [
+            ("lane_m = 3.5", "lane_m = 35.0", "is not within 1.8 to 6"),
+            ("lane_m = 3.5", "lane_m = nan", "is not within 1.8 to 6"),
+            ("[class.motorway]", "[class.motorwayy]", "motorwayy"),
+            ("width_m = 6.0", "width_m = 16.0", "ring.country.DE: width_m = 16 is not within 1.8 to 12"),
+            ("primary = 4.2", "primary = 0.2", "ramp: width_m of Primary = 0.2 is not within 1.8 to 12"),
+            ("[ring.country.DE]", "[ring.country.de]", "ring.country.de: not an ISO 3166-1 code"),
+            ("country.US", "country.usa", "country usa: not an ISO 3166-1 code"),
+            ("lanes = 2", "lanes = 2\nlane = 2", "unknown field"),
+            ("sources = [", "sources = [\"nowhere\", ", "\"nowhere\" is not listed"),
+            ("right = [", "right = [\"AU\", ", "driving_side: AU is in both lists"),
+            ("right = [", "rights = [", "rights"),
+        ] {
+            let text = BUILTIN.replace(from, to);
+            assert_ne!(text, BUILTIN, "{from}");
+            let error = Rules::parse(&text, "test.toml").unwrap_err().to_string();
+            assert!(error.contains(said) && error.contains("test.toml"), "{error}");
+        }
+        let (start, end) = (BUILTIN.find("[ring]").unwrap(), BUILTIN.find("# Deducted").unwrap());
+        let without = Rules::parse(&BUILTIN.replace(&BUILTIN[start..end], ""), "test.toml").unwrap();
+        assert_eq!((without.ring_m(*b"DE", Some(15.0)), without.ramp_m(RoadClass::Motorway)), (None, None));
+        let error = Rules::from_path(Path::new("/nowhere/rules.toml")).unwrap_err().to_string();
+        assert!(error.contains("/nowhere/rules.toml"), "{error}");
+    }
 }

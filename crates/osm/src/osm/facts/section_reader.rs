@@ -7,8 +7,9 @@ use crate::osm::facts::kerb_reader::KerbReader;
 use crate::osm::facts::lane_lists::{Lists, list_index};
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section::{LaneLine, LaneTags, Mark, Marks, Millimetres, Placement, SectionTags};
+use crate::osm::facts::value::{self, readable};
 use crate::osm::facts::widths::LANE_M;
-use crate::osm::facts::{Direction, Oneway, WidthSource, value};
+use crate::osm::facts::{Direction, Oneway, WidthSource};
 
 /// Greatest width of a carriageway, metres. A greater value is a typing error.
 const WIDEST_M: f32 = 40.0;
@@ -347,16 +348,6 @@ impl Placement {
             other => other,
         }
     }
-}
-
-/// A length, with a comma or a point before its decimals.
-pub(super) fn readable(text: &str) -> Option<f32> {
-    value::metres(text).or_else(|| {
-        let (whole, rest) = text.split_once(',')?;
-        let decimals = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-        // Three digits after a comma may be thousands.
-        if (1..=2).contains(&decimals) { value::metres(&format!("{whole}.{rest}")) } else { None }
-    })
 }
 
 /// The least length of a list, of a range or of an approximation: `3;4`, `3-4`, `~3`, `ca. 3`, `3+`. `None` if a part cannot

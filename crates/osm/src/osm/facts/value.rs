@@ -186,6 +186,16 @@ pub(super) fn lane_count(text: &str) -> (Option<u8>, bool) {
     }
 }
 
+/// A length, with a comma or a point before its decimals.
+pub(super) fn readable(text: &str) -> Option<f32> {
+    metres(text).or_else(|| {
+        let (whole, rest) = text.split_once(',')?;
+        let decimals = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        // Three digits after a comma may be thousands.
+        if (1..=2).contains(&decimals) { metres(&format!("{whole}.{rest}")) } else { None }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

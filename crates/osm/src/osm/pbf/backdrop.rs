@@ -5,63 +5,16 @@ use std::collections::BTreeMap;
 
 use crate::osm::backdrop::{self, Backdrop, BackdropShape};
 use crate::osm::changes::{Changes, Kind};
-use crate::osm::facts::{BackdropForm, BackdropKind};
+use crate::osm::facts::BackdropForm;
+use crate::osm::read_account::BackdropTally;
 use crate::osm::{LonLat, NodeId, NodeTable};
 
+use super::backdrop_objects::{AreaRelation, BackdropWay, PlaceNode};
 use super::block::Block;
+use super::duplicates::keep_last;
 use super::error::Problem;
-use super::gather::keep_last;
 use super::relations;
 use super::wire::Cursor;
-
-/// Counts of the backdrop's things: `kept + incomplete + too_small + off_file` is all that was read.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct BackdropTally {
-    /// Things in the extract.
-    pub kept: u64,
-    /// Areas of which the file lacks a way or a node, or whose ways do not close.
-    pub incomplete: u64,
-    /// Areas that are too small to be seen on any map.
-    pub too_small: u64,
-    /// Lines of which the file has no two nodes in a row.
-    pub off_file: u64,
-}
-
-impl BackdropTally {
-    /// All things that were read.
-    #[must_use]
-    pub fn read(&self) -> u64 {
-        self.kept + self.incomplete + self.too_small + self.off_file
-    }
-}
-
-/// A multipolygon whose tags make it part of the backdrop.
-#[derive(Debug)]
-pub(super) struct AreaRelation {
-    pub(super) id: i64,
-    pub(super) kind: BackdropKind,
-    pub(super) name: Option<Box<str>>,
-    /// The ways, and whether each is part of a hole.
-    pub(super) members: Vec<(i64, bool)>,
-}
-
-/// A way of the backdrop. Its kind is `None` if only a multipolygon makes it part of it.
-#[derive(Debug)]
-pub(super) struct BackdropWay {
-    pub(super) id: i64,
-    pub(super) kind: Option<BackdropKind>,
-    pub(super) name: Option<Box<str>>,
-    pub(super) refs: Vec<NodeId>,
-}
-
-/// A node that names a place.
-#[derive(Debug)]
-pub(super) struct PlaceNode {
-    pub(super) id: NodeId,
-    pub(super) kind: BackdropKind,
-    pub(super) name: Box<str>,
-    pub(super) place: LonLat,
-}
 
 /// The multipolygons of a block. Those that are `changed` are passed over.
 pub(super) fn areas(block: &Block<'_>, changed: &Changes) -> Result<Vec<AreaRelation>, Problem> {

@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::osm::{LonLat, NodeId, NodeTable, RoadArea, StringPool, Way, facts::PointFacts};
+use crate::osm::{LonLat, NodeId, NodeTable, RoadArea, StringPool, Way, facts::PointFacts, read_account::NodeTally};
 
 use super::{
-    account::NodeTally,
-    backdrop::{BackdropWay, PlaceNode},
+    backdrop_objects::{BackdropWay, PlaceNode},
+    duplicates::keep_last,
     error::Problem,
     nodes::NodeBatch,
     relations::RelationBatch,
@@ -168,17 +168,6 @@ impl WayGatherer {
         ids.extend(self.areas.iter().flat_map(|area| &area.refs));
         distinct(ids)
     }
-}
-
-/// Of several in a row with the same id, the last one stays.
-pub(super) fn keep_last<T, I: PartialEq>(sorted: &mut Vec<T>, id: impl Fn(&T) -> I) {
-    sorted.dedup_by(|later, earlier| {
-        let same = id(later) == id(earlier);
-        if same {
-            std::mem::swap(later, earlier);
-        }
-        same
-    });
 }
 
 fn distinct(mut ids: Vec<NodeId>) -> Vec<NodeId> {

@@ -3,6 +3,8 @@
 use osmpbfreader::osmformat::HeaderBlock;
 use protobuf::Message;
 
+use crate::osm::read_account::HeaderInfo;
+
 use super::{
     error::Problem,
     wire::{self, Shape},
@@ -10,33 +12,6 @@ use super::{
 
 /// Features that this reader supports. Any other required feature is refused by name.
 const SUPPORTED: [&str; 3] = ["OsmSchema-V0.6", "DenseNodes", "LocationsOnWays"];
-
-/// Data of the file's first header. Missing texts are empty.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct HeaderInfo {
-    /// West, south, east, north in nanodegrees, if given.
-    pub bbox_nanodegrees: Option<[i64; 4]>,
-    /// Program that wrote the file.
-    pub writing_program: String,
-    /// Source of the data.
-    pub source: String,
-    /// Seconds since 1970 (UTC) up to which the data is complete, if given.
-    pub replication_timestamp_s: Option<i64>,
-    /// Sequence number of the replication, if given.
-    pub replication_sequence: Option<i64>,
-    /// Whether the file claims to be sorted by type and id. The claim is always checked.
-    pub sorted: bool,
-    /// Whether the file claims that ways carry the positions of their nodes.
-    pub locations_on_ways: bool,
-}
-
-impl HeaderInfo {
-    /// West, south, east, north in degrees, if given.
-    #[must_use]
-    pub fn bbox_deg(&self) -> Option<[f64; 4]> {
-        self.bbox_nanodegrees.map(|sides| sides.map(|side| side as f64 * 1e-9))
-    }
-}
 
 /// Reads a header block. Refuses files that cannot be read correctly.
 pub(super) fn parse(block: &[u8]) -> Result<HeaderInfo, Problem> {

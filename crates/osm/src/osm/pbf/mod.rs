@@ -9,10 +9,11 @@
 //! `wire` reads bulk data (ways, dense nodes) in place. Headers, plain nodes and relations are read through the
 //! messages of `osmpbfreader`, after `wire` has checked what those messages do not check.
 
-mod account;
 mod backdrop;
+mod backdrop_objects;
 mod block;
 pub mod copy;
+mod duplicates;
 mod error;
 mod frame;
 mod gather;
@@ -27,11 +28,8 @@ pub mod write;
 
 use std::path::Path;
 
-pub use account::{NodeTally, ReadAccount};
-pub use backdrop::BackdropTally;
+pub use super::read_account::{BackdropTally, HeaderInfo, NodeTally, ReadAccount, RelationTally};
 pub use error::{ObjectId, Problem, ReadError};
-pub use header::HeaderInfo;
-pub use relations::RelationTally;
 pub use wire::WireError;
 
 use crate::osm::{

@@ -13,7 +13,7 @@ use crate::osm::{
 };
 
 use super::{
-    backdrop::PlaceNode,
+    backdrop_objects::PlaceNode,
     block::{self, Block},
     error::{ObjectId, Problem},
     wire::{self, Cursor, Packed, Shape},

@@ -8,62 +8,15 @@ use rustc_hash::FxHashSet;
 
 use crate::osm::changes::{Changes, Kind};
 use crate::osm::facts::{BackdropForm, NoRule, TurnRule, backdrop_kind, turn_rules};
+use crate::osm::read_account::RelationTally;
 use crate::osm::{NodeId, Restriction, Via};
 
 use super::{
-    backdrop::AreaRelation,
+    backdrop_objects::AreaRelation,
     block::Strings,
     error::{ObjectId, Problem},
     wire::{self, Shape},
 };
-
-/// Counts of relations: `read = kept + (read − restrictions) + broken_restrictions + unknown_restrictions + on_red +
-/// other_vehicles + exempt + superseded`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct RelationTally {
-    /// All relations.
-    pub read: u64,
-    /// Turn restrictions. Nothing else is used.
-    pub restrictions: u64,
-    /// Restrictions whose members do not say which turns they mean, or that are their own member.
-    pub broken_restrictions: u64,
-    /// Restrictions without a value that begins with `no_` or `only_`.
-    pub unknown_restrictions: u64,
-    /// Whole restrictions of turns at red lights.
-    pub on_red: u64,
-    /// Kept restrictions that lack one member, so that more than one turn may be meant.
-    pub incomplete_restrictions: u64,
-    /// Whole restrictions that concern only vehicles other than heavy goods vehicles.
-    pub other_vehicles: u64,
-    /// Whole restrictions that exempt heavy goods vehicles.
-    pub exempt: u64,
-    /// Whole restrictions followed by another one with the same id: the file's last one counts.
-    pub superseded: u64,
-    /// Whole restrictions with a `via` node that is on no kept way or not in the file.
-    pub restrictions_off_road: u64,
-}
-
-impl RelationTally {
-    pub(super) fn add(&mut self, other: Self) {
-        self.read += other.read;
-        self.restrictions += other.restrictions;
-        self.broken_restrictions += other.broken_restrictions;
-        self.unknown_restrictions += other.unknown_restrictions;
-        self.on_red += other.on_red;
-        self.incomplete_restrictions += other.incomplete_restrictions;
-        self.other_vehicles += other.other_vehicles;
-        self.exempt += other.exempt;
-        self.superseded += other.superseded;
-        self.restrictions_off_road += other.restrictions_off_road;
-    }
-
-    /// Restrictions in the extract.
-    #[must_use]
-    pub fn kept(&self) -> u64 {
-        let unread = self.broken_restrictions + self.unknown_restrictions;
-        self.restrictions - unread - self.on_red - self.other_vehicles - self.exempt - self.superseded
-    }
-}
 
 /// Results from a block's relations.
 #[derive(Debug, Default)]

@@ -14,7 +14,7 @@ use crate::osm::{
 };
 
 use super::{
-    backdrop::BackdropWay,
+    backdrop_objects::BackdropWay,
     block::{self, Block},
     error::{ObjectId, Problem},
     relations::{self, RelationBatch},

@@ -6,21 +6,9 @@
 use super::hours::Hours;
 use super::property::Property;
 use super::subject::Subject;
+use super::truth::Truth;
 use crate::osm::facts::value;
 use crate::vehicle::{Classes, Member};
-
-/// When a condition holds for a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Truth {
-    /// At no time.
-    Never,
-    /// At some times, or in some weather.
-    Sometimes,
-    /// Nobody knows.
-    Unclear,
-    /// At all times.
-    Always,
-}
 
 /// How a number is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

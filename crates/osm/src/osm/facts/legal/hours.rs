@@ -7,8 +7,8 @@ use jiff::civil::DateTime;
 use opening_hours::localization::Country;
 use opening_hours::{Context, OpeningHours, RuleKind};
 
-use super::condition::Truth;
 use super::subject::At;
+use super::truth::Truth;
 
 /// Times at which a condition holds.
 #[derive(Clone)]

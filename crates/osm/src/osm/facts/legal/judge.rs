@@ -6,12 +6,13 @@
 //! One rule is stricter than the wiki: a plain value of a more specific key does not lift a condition that closes the road, because passes
 //! and gates are closed for everybody. `designated` and the keys of buses lift conditions of `vehicle` and `motor_vehicle`.
 
-use super::condition::{Clause, Truth};
+use super::condition::Clause;
 use super::outcomes::{Cause, Outcome, Outcomes};
 use super::property::{Property, SLACK};
 use super::rule::{About, Closes, Rule, Says, oneway_closes, permission_for};
 use super::set::Group;
 use super::subject::Subject;
+use super::truth::Truth;
 use crate::osm::facts::{Direction, Limit, Permission};
 use crate::vehicle::{EVERYBODY, Member};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};

@@ -8,6 +8,7 @@
 //! | `tags` | the tags of an object that may be rules |
 //! | `rule` | a tag as a rule: whom it concerns, what it says |
 //! | `condition`, `hours` | conditions and their times |
+//! | `truth` | whether something holds always, never or at times |
 //! | `property` | what is compared of a vehicle |
 //! | `set` | the rules of a direction as they are kept and stored |
 //! | `named` | the tag behind a plain limit, access or a barrier |
@@ -26,6 +27,7 @@ mod subject;
 mod tags;
 #[cfg(test)]
 mod tests;
+mod truth;
 
 use super::{Direction, Legal, Limit, Permission, told};
 use crate::vehicle::{Member, Vehicle};
@@ -35,7 +37,7 @@ use property::{Property, SLACK};
 use set::Group;
 use subject::Subject;
 
-pub(super) use rule::{OTHER_VEHICLES, REMARKS};
+pub(super) use rule::OTHER_VEHICLES;
 pub use set::RuleSet;
 pub use subject::At;
 pub(super) use tags::RuleTags;

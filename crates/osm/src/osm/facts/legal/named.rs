@@ -2,8 +2,8 @@
 
 use super::{Direction, Legal, Property, RuleTags};
 use crate::osm::facts::access::permission;
+use crate::osm::facts::keys::PASSAGE_KEYS;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::points::PASSAGE_KEYS;
 use crate::osm::facts::{Limit, Permission, told};
 
 /// Keys of access for lorries and for all motor vehicles, the most specific one first.

@@ -1,6 +1,6 @@
 //! What access tags may come to, over all times and over what is not understood.
 
-use super::condition::Truth;
+use super::truth::Truth;
 use crate::osm::facts::Permission;
 
 /// Why an outcome is only one of several.

@@ -3,6 +3,7 @@
 use super::condition::{Clause, clauses};
 use super::property::Property;
 use crate::osm::facts::access::permission;
+use crate::osm::facts::keys::REMARKS;
 use crate::osm::facts::notes::Notes;
 use crate::osm::facts::{Direction, Limit, Permission};
 use crate::vehicle::{Class, Classes, Member};
@@ -87,35 +88,6 @@ pub(in crate::osm::facts) const OTHER_VEHICLES: [&str; 37] = [
 
 /// Keys of widths, which become rules only where they cannot be read.
 const WIDTHS: [&str; 3] = ["width", "width:carriageway", "est_width"];
-
-/// Parts of keys that make a remark of a tag, or a matter of lanes.
-pub(in crate::osm::facts) const REMARKS: [&str; 25] = [
-    "check_date",
-    "colour",
-    "comment",
-    "date",
-    "description",
-    "end_date",
-    "fixme",
-    "image",
-    "lane",
-    "layer",
-    "mapillary",
-    "name",
-    "note",
-    "old",
-    "operator",
-    "proposed",
-    "reason",
-    "ref",
-    "source",
-    "start_date",
-    "survey",
-    "turn",
-    "url",
-    "variable",
-    "was",
-];
 
 /// A key that speaks of a limit but bars the passage whole, or seasons.
 fn about_of(key: &str) -> Option<About> {

@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::account::AccountRow;
 
-use super::{backdrop::BackdropTally, header::HeaderInfo, relations::RelationTally};
-
 /// Counts of every object read. `ways_read = ways_kept + Σ ways_left_out`, and nodes add up likewise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadAccount {
@@ -135,5 +133,102 @@ impl ReadAccount {
         }
         row("blob", "noted", "unknown_type", self.blobs_passed_over);
         rows
+    }
+}
+
+/// Data of the file's first header. Missing texts are empty.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct HeaderInfo {
+    /// West, south, east, north in nanodegrees, if given.
+    pub bbox_nanodegrees: Option<[i64; 4]>,
+    /// Program that wrote the file.
+    pub writing_program: String,
+    /// Source of the data.
+    pub source: String,
+    /// Seconds since 1970 (UTC) up to which the data is complete, if given.
+    pub replication_timestamp_s: Option<i64>,
+    /// Sequence number of the replication, if given.
+    pub replication_sequence: Option<i64>,
+    /// Whether the file claims to be sorted by type and id. The claim is always checked.
+    pub sorted: bool,
+    /// Whether the file claims that ways carry the positions of their nodes.
+    pub locations_on_ways: bool,
+}
+
+impl HeaderInfo {
+    /// West, south, east, north in degrees, if given.
+    #[must_use]
+    pub fn bbox_deg(&self) -> Option<[f64; 4]> {
+        self.bbox_nanodegrees.map(|sides| sides.map(|side| side as f64 * 1e-9))
+    }
+}
+
+/// Counts of relations: `read = kept + (read − restrictions) + broken_restrictions + unknown_restrictions + on_red +
+/// other_vehicles + exempt + superseded`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RelationTally {
+    /// All relations.
+    pub read: u64,
+    /// Turn restrictions. Nothing else is used.
+    pub restrictions: u64,
+    /// Restrictions whose members do not say which turns they mean, or that are their own member.
+    pub broken_restrictions: u64,
+    /// Restrictions without a value that begins with `no_` or `only_`.
+    pub unknown_restrictions: u64,
+    /// Whole restrictions of turns at red lights.
+    pub on_red: u64,
+    /// Kept restrictions that lack one member, so that more than one turn may be meant.
+    pub incomplete_restrictions: u64,
+    /// Whole restrictions that concern only vehicles other than heavy goods vehicles.
+    pub other_vehicles: u64,
+    /// Whole restrictions that exempt heavy goods vehicles.
+    pub exempt: u64,
+    /// Whole restrictions followed by another one with the same id: the file's last one counts.
+    pub superseded: u64,
+    /// Whole restrictions with a `via` node that is on no kept way or not in the file.
+    pub restrictions_off_road: u64,
+}
+
+impl RelationTally {
+    /// Adds the counts of another block.
+    pub(in crate::osm) fn add(&mut self, other: Self) {
+        self.read += other.read;
+        self.restrictions += other.restrictions;
+        self.broken_restrictions += other.broken_restrictions;
+        self.unknown_restrictions += other.unknown_restrictions;
+        self.on_red += other.on_red;
+        self.incomplete_restrictions += other.incomplete_restrictions;
+        self.other_vehicles += other.other_vehicles;
+        self.exempt += other.exempt;
+        self.superseded += other.superseded;
+        self.restrictions_off_road += other.restrictions_off_road;
+    }
+
+    /// Restrictions in the extract.
+    #[must_use]
+    pub fn kept(&self) -> u64 {
+        let unread = self.broken_restrictions + self.unknown_restrictions;
+        self.restrictions - unread - self.on_red - self.other_vehicles - self.exempt - self.superseded
+    }
+}
+
+/// Counts of the backdrop's things: `kept + incomplete + too_small + off_file` is all that was read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct BackdropTally {
+    /// Things in the extract.
+    pub kept: u64,
+    /// Areas of which the file lacks a way or a node, or whose ways do not close.
+    pub incomplete: u64,
+    /// Areas that are too small to be seen on any map.
+    pub too_small: u64,
+    /// Lines of which the file has no two nodes in a row.
+    pub off_file: u64,
+}
+
+impl BackdropTally {
+    /// All things that were read.
+    #[must_use]
+    pub fn read(&self) -> u64 {
+        self.kept + self.incomplete + self.too_small + self.off_file
     }
 }
