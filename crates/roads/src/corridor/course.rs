@@ -3,7 +3,7 @@
 use super::Params;
 use super::merge::{Jog, Relaid, Split};
 use super::polyline::Polyline;
-use super::profile::Across;
+use super::stretch::Across;
 use super::taper::Ramp;
 use crate::network::{Edge, EdgeNo, Splits};
 

@@ -11,7 +11,7 @@
 //! jog than with it. A road that bends the other way, or continues along its middle, keeps its line as drawn.
 
 use super::polyline::Polyline;
-use super::profile::Across;
+use super::stretch::Across;
 use super::taper::{Ramp, share};
 
 /// Shortest jog, metres. A jog begins at the node.

@@ -16,6 +16,7 @@ mod profile;
 mod resample;
 mod smooth;
 mod spline;
+mod stretch;
 mod stroke;
 mod taper;
 #[cfg(test)]

@@ -5,56 +5,9 @@
 //! There are two exceptions: a taper may use the surface that the strip moves across, and a lane may change places
 //! within the lanes of its direction. No width is invented.
 
-use super::spline::{Cubics, Spline};
+use super::spline::{Cubics, KNOT_M, Spline};
+use super::stretch::{Across, Stretch};
 use super::taper::{Ramp, take_jumps};
-
-/// Positions across the way's line, metres, positive left of travel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Across {
-    pub(crate) left_m: f64,
-    pub(crate) right_m: f64,
-}
-
-impl Across {
-    pub(crate) fn within(self, other: Self) -> bool {
-        self.left_m <= other.left_m && self.right_m >= other.right_m
-    }
-
-    fn meet(self, other: Self) -> Option<Self> {
-        let both = Self { left_m: self.left_m.min(other.left_m), right_m: self.right_m.max(other.right_m) };
-        (both.left_m > both.right_m).then_some(both)
-    }
-
-    pub(crate) fn hull(self, other: Self) -> Self {
-        Self { left_m: self.left_m.max(other.left_m), right_m: self.right_m.min(other.right_m) }
-    }
-
-    pub(crate) fn moved(self, by_m: f64) -> Self {
-        Self { left_m: self.left_m + by_m, right_m: self.right_m + by_m }
-    }
-
-    pub(crate) fn width_m(self) -> f64 {
-        self.left_m - self.right_m
-    }
-}
-
-/// A stretch of the line with one strip.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
-    /// Arc length along the way's line.
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    /// What the vehicle may use.
-    pub(crate) strip: Across,
-    /// The lanes of the direction, within which the strip may shift. Contains `strip`.
-    pub(crate) shift: Across,
-    /// The paved surface. Tapers lie within it. Contains `shift`.
-    pub(crate) surface: Across,
-    /// Whether vehicles drive both ways here.
-    pub(crate) two_way: bool,
-    /// Metres of taper along the road per metre across.
-    pub(crate) ratio: f64,
-}
 
 /// A narrow place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,8 +22,6 @@ pub(crate) type Profile = Spline<3>;
 /// Index of the centreline in a [`Profile`].
 pub(crate) const MIDDLE: usize = 2;
 
-/// Knot spacing of the profile, metres. A narrow place affects four knots to each side.
-pub(crate) const KNOT_M: f64 = 2.5;
 /// Least width of a corridor, metres. No vehicle fits, because none is as narrow, but left stays left of right.
 pub(crate) const LEAST_WIDTH_M: f64 = 0.05;
 /// Half of a narrow place's own length, metres.

@@ -3,6 +3,9 @@
 //! Both are C² with a third derivative that is constant between knots. A B-spline's value is a convex mean of four
 //! coefficients, so a bound on the coefficients over a cell bounds the curve there.
 
+/// Knot spacing of the width profile, metres. A narrow place affects four knots to each side.
+pub(crate) const KNOT_M: f64 = 2.5;
+
 /// Value and first three derivatives, `[derivative][component]`.
 pub(crate) type Jet<const N: usize> = [[f64; N]; 4];
 

@@ -6,10 +6,11 @@
 use super::course::{Course, DrivenLink, Link, Role};
 use super::laid::{LaidOut, Sections};
 use super::merge::Jog;
-use super::profile::{Across, CHANGE_M, Gap, MIDDLE, Stretch, limit_offset, profile};
+use super::profile::{CHANGE_M, Gap, MIDDLE, limit_offset, profile};
 use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
 use super::smooth::Smoothed;
 use super::spline::Cubics;
+use super::stretch::{Across, Stretch};
 use super::taper::Ramp;
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
 use crate::network::{Network, Stroke};

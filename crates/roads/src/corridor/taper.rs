@@ -5,7 +5,8 @@
 //! farther out. Without a taper the strip would lose half a lane at the node; with a taper it moves over. The move is
 //! sound because the strip stays, all along the taper, on mapped surface on the taper's side of the node.
 
-use super::profile::{Across, KNOT_M, Stretch};
+use super::spline::KNOT_M;
+use super::stretch::{Across, Stretch};
 use crate::osm::facts::RoadClass;
 
 /// Metres along the road per metre across, by the speed S assumed for a class: MUTCD 2009, table 6H-4, with L = W·S for

@@ -6,7 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 
-use super::profile::{Across, Gap, LEAST_WIDTH_M, Stretch, profile};
+use super::profile::{Gap, LEAST_WIDTH_M, profile};
+use super::stretch::{Across, Stretch};
 use super::*;
 use crate::network::{Edge, EdgeNo, Narrowing, Network, Road, Stroke};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};

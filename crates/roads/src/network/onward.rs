@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::restrictions::Leaving;
+use super::leaving::Leaving;
 use super::{EdgeNo, Network, reverse};
 use crate::osm::NodeId;
 

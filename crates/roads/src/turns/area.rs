@@ -12,6 +12,7 @@ use geo::{Area as _, BooleanOps, Euclidean, Length, LineString, MultiPolygon, Po
 
 use super::LengthClass;
 use super::arm::{Across, Arm};
+use super::vector::{add, along, unit};
 use crate::corridor::{Area, outline};
 use crate::osm::facts::Policy;
 
@@ -357,20 +358,6 @@ pub(super) fn segments_cross(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2])
     let u = (from[0] * r[1] - from[1] * r[0]) / across;
     let inside = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u);
     inside.then(|| ([a[0] + t * r[0], a[1] + t * r[1]], t, u))
-}
-
-fn unit(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let d = [b[0] - a[0], b[1] - a[1]];
-    let length = d[0].hypot(d[1]).max(1e-12);
-    [d[0] / length, d[1] / length]
-}
-
-pub(super) fn along(p: [f64; 2], direction: [f64; 2], m: f64) -> [f64; 2] {
-    [p[0] + m * direction[0], p[1] + m * direction[1]]
-}
-
-fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] + b[0], a[1] + b[1]]
 }
 
 /// A ring as a polygon that runs counter-clockwise. A union treats rings of the other sense as holes.

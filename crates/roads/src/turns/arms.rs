@@ -3,10 +3,11 @@
 //! The roads meet at one node, or at two nodes of a complex. Paths need only the two centrelines, so both are alike.
 
 use super::LengthClass;
-use super::area::{along, segments_cross};
+use super::area::segments_cross;
 use super::arm::Arm;
 use super::code::Shape;
 use super::path::{self, wrapped};
+use super::vector::along;
 
 /// Distance from the nodes within which the meeting place is searched along each centreline, metres.
 pub(super) const MEET_M: f64 = 90.0;

@@ -8,9 +8,10 @@
 use geo::{BooleanOps, MultiPolygon, Polygon};
 
 use super::TurnParams;
-use super::area::{ARC_STEP_RAD, CROSSING_M, Corner, along, polygon, rounded};
+use super::area::{ARC_STEP_RAD, CROSSING_M, Corner, polygon, rounded};
 use super::path::wrapped;
 use super::surface::surface;
+use super::vector::along;
 use crate::corridor::Frame;
 use crate::network::{Edge, EdgeNo, Network, Road};
 use crate::osm::NodeId;

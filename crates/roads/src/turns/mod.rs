@@ -14,6 +14,7 @@
 //! | `kerbs` | assumed kerb radii, `data/kerbs.toml` |
 //! | `surface` | the junction's mapped surface |
 //! | `islands` | mapped islands, which every area lacks |
+//! | `vector` | places and directions in the plane |
 //! | `area` | the drivable area as polygons |
 //! | `crossing` | what the other roads of the junction add to it |
 //! | `drawn` | a corner between two drawn roads, without a map |
@@ -56,6 +57,7 @@ mod rays;
 mod roundabout;
 mod surface;
 mod turn_no;
+mod vector;
 
 use std::ops::Range;
 

@@ -4,6 +4,8 @@
 //! Every path is tangent to both centrelines and has zero curvature at its ends. The planner and the certificate judge the
 //! paths.
 
+use super::vector::along;
+
 /// A place, and the heading there in radians from x towards y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pose {
@@ -77,7 +79,7 @@ fn straight(from: [f64; 2], u: [f64; 2], length_m: f64, step_m: f64) -> Vec<[f64
         return vec![from];
     }
     let steps = (length_m / step_m).round().max(1.0);
-    (0..=steps as usize).map(|i| super::area::along(from, u, length_m * i as f64 / steps)).collect()
+    (0..=steps as usize).map(|i| along(from, u, length_m * i as f64 / steps)).collect()
 }
 
 /// Transition, arc and transition to the left with radius 1, from the origin along x.
@@ -204,9 +206,9 @@ mod tests {
             for (sign, shares) in [(1.0, [0.25; 2]), (-1.0, [0.25; 2]), (1.0, [0.1, 0.5]), (-1.0, [0.6, 0.3])] {
                 let a = Pose { at: [3.0, -2.0], heading: 0.4 };
                 let (before, after) = (32.0, 41.0);
-                let v = super::super::area::along(a.at, a.forward(), before);
+                let v = along(a.at, a.forward(), before);
                 let mut b = Pose { at: v, heading: a.heading + sign * turned };
-                b.at = super::super::area::along(v, b.forward(), after);
+                b.at = along(v, b.forward(), after);
                 let points = corner(a, b, shares, STEP_M).unwrap();
                 let end = points.last().unwrap();
                 assert!((end[0] - b.at[0]).hypot(end[1] - b.at[1]) < 1e-3, "{turned}: {end:?} {b:?}");
