@@ -1,6 +1,6 @@
 //! Where a way fails as a whole, and what is supposed there beyond what its parts need.
 
-use super::fit::{Fitter, Fitting};
+use super::fitter::{Fitter, Fitting};
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
 use crate::assemble::{PartKind, RoutePart};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::failing::{Failing, failing};
-use super::fit::{Fitter, Fitting, network_of};
+use super::fitter::{Fitter, Fitting, network_of};
 use super::suppositions::Suppositions;
 use super::{Condition, ConditionAt};
 use crate::graph::Access;

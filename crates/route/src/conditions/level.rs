@@ -1,38 +1,14 @@
-//! One condition for one road: which edges of a way belong to one road, and one width where they need nearly the same. There is less to
-//! measure then, and the sheet is shorter.
+//! One condition for one road: one width where its edges need nearly the same. There is less to measure then, and the sheet is shorter.
 
 use std::collections::BTreeMap;
 
 use super::suppositions::Suppositions;
-use crate::network::{EdgeNo, Network, Road};
+use super::way_roads::roads;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 
 /// Widths of one road that differ by no more than this become one condition, metres.
 const LEVEL_M: f64 = 0.5;
-
-/// The number of the road of each edge of a way. A road ends where the way leaves it; the same road further on has another number.
-pub(super) fn roads(network: &Network, way: &[EdgeNo]) -> Vec<usize> {
-    let strokes = network.strokes_of_edges();
-    let mut road = 0;
-    let mut numbers = Vec::with_capacity(way.len());
-    for (i, &edge) in way.iter().enumerate() {
-        road += usize::from(i > 0 && !goes_on(network, &strokes, way[i - 1], edge));
-        numbers.push(road);
-    }
-    numbers
-}
-
-/// Whether an edge belongs to the road of the edge before it: the same way, name or reference, or straight on.
-fn goes_on(network: &Network, strokes: &[u32], a: EdgeNo, b: EdgeNo) -> bool {
-    let stroke = |edge: EdgeNo| strokes.get(edge.index()).filter(|&&stroke| stroke != u32::MAX);
-    let road = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.road(edge));
-    let same = |a: &Road, b: &Road| {
-        let name = a.name.is_some() && a.name == b.name;
-        let reference = a.reference.is_some() && a.reference == b.reference;
-        a.way_id == b.way_id || (a.link == b.link && (name || reference))
-    };
-    road(a).zip(road(b)).is_some_and(|(a, b)| same(a, b)) || stroke(a).is_some_and(|of_a| stroke(b) == Some(of_a))
-}
 
 impl Suppositions {
     /// Gives edges of one road of a way the greatest of their widths, if these differ little. A lane that is all of its direction is

@@ -2,7 +2,7 @@
 //! middle, and a turn that begins there another path. Where sections fail, or the whole, more is supposed there.
 
 use super::failing::failing;
-use super::fit::{Fitted, Fitter, Fitting};
+use super::fitter::{Fitted, Fitter, Fitting};
 use super::sections::Section;
 use super::suppositions::Suppositions;
 use crate::assemble::Way;

@@ -5,6 +5,7 @@
 
 mod failing;
 mod fit;
+mod fitter;
 mod joint;
 mod less;
 mod level;
@@ -18,9 +19,10 @@ mod stretch;
 mod suppositions;
 mod together;
 mod turn_need;
+mod way_roads;
 
 // What the search for a way fits ways with.
-pub(super) use fit::{Fitted, Fitter, Unfit};
+pub(super) use fitter::{Fitted, Fitter, Unfit};
 pub(super) use prices::conditional_access;
 
 pub use report::SHEET_COLUMNS;

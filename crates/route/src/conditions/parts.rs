@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::fit::{Fitter, Fitting, network_of};
+use super::fitter::{Fitter, Fitting, network_of};
 use super::joint;
 use super::turn_need::Turning;
 use crate::assemble::{PartKind, movement};
@@ -15,9 +15,6 @@ use crate::stop::{Stop, Stopped};
 
 /// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
 pub(crate) const BESIDE_M: f64 = 20.0;
-
-/// The edges of a turn, with the widths of the roads beside it in centimetres.
-pub(super) type TurnKey = (Vec<EdgeNo>, Vec<i64>);
 
 /// What becomes of a step of a way.
 enum Step {

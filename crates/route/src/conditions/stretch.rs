@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::failing::{Failing, failing};
-use super::fit::{Fitter, Fitting, Unfit, network_of};
+use super::fitter::{Fitter, Fitting, Unfit, network_of};
 use super::joint;
 use super::sections::Section;
 use crate::assemble::{PartKind, Way};

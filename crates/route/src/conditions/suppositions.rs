@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use super::level::roads;
-use super::turn_need::PAVED_M;
+use super::way_roads::roads;
 use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
@@ -15,6 +14,8 @@ use crate::osm::facts::{CrossSection, Policy, WidthSource};
 use crate::osm::{LonLat, NodeId};
 use crate::turns::Kerbs;
 
+/// How far around its nodes a junction is supposed to be paved, metres.
+pub(super) const PAVED_M: [f64; 10] = [6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0];
 /// Less than what a road lacks, as shares of it.
 const WIDTH_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Widths are supposed in these parts of a metre, and kerb radii in these.

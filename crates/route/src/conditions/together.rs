@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::fit::Fitter;
+use super::fitter::Fitter;
 use crate::stop::Stopped;
 
 /// The greatest number of fitters, and of edges in all their copies of the network together. In Heidelberg an edge takes 1.4 kilobytes.

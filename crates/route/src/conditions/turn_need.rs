@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::suppositions::Suppositions;
+use super::suppositions::{PAVED_M, Suppositions};
 use crate::certify::{KERBS_M, best_of, fits, flares, least_of};
 use crate::drive::{Drive, Join};
 use crate::driver::Driver;
@@ -16,8 +16,7 @@ use crate::verdict::UnknownReason;
 
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
 const KERB_WITH_FLARE_M: f64 = 12.0;
-/// How far around its nodes a junction is supposed to be paved, metres; and how far together with wider roads.
-pub(super) const PAVED_M: [f64; 10] = [6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0];
+/// How far around its nodes a junction is supposed to be paved together with wider roads, metres.
 const PAVED_WITH_FLARE_M: f64 = 20.0;
 /// If the best simple path lacks more than this where everything is as wide as it may be, no other is looked for, metres.
 const HOPELESS_M: f64 = 1.0;
