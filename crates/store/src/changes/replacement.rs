@@ -15,6 +15,7 @@ use crate::error::{StoreError, content};
 use crate::layers::contents;
 use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::results::compact::CompactCertificate;
+use crate::results::complete::check_complete;
 use crate::results::plans;
 use crate::results::sets::{self, Set};
 use crate::results::turns::{self, PackedSet, TurnSet};
@@ -48,7 +49,7 @@ impl Database {
         rows.sort_unstable_by_key(|row| row.fid);
         let edges: u32 =
             self.session.run(async |c| sqlx::query_scalar("SELECT count(*) FROM edge").fetch_one(c).await)?;
-        sets::check_complete(&rows, edges).map_err(|(edge, detail)| unsound(edge, detail.to_owned()))?;
+        check_complete(&rows, edges).map_err(|(edge, detail)| unsound(edge, detail.to_owned()))?;
         let packed = match &mut turns {
             Some(turns) => Some(turns.pack().map_err(|(turn, why)| unsound(turn, why))?),
             None => None,

@@ -4,6 +4,7 @@ pub(crate) mod at_time;
 pub(crate) mod carry_over;
 pub(crate) mod checkpoint;
 pub(crate) mod compact;
+pub(crate) mod complete;
 pub(crate) mod numbers;
 pub(crate) mod plans;
 pub(crate) mod query;

@@ -25,10 +25,10 @@ use crate::file::bulk::{Bulk, Takes};
 use crate::layers::contents::Layer;
 use crate::layers::styles::{self, Shows};
 use crate::results::compact::CompactCertificate;
+use crate::results::complete::{Complete, Fault, check_complete};
 use crate::results::numbers;
 use crate::results::plans;
 use crate::results::query::{Area, polygons};
-use crate::results::sets::{self, Complete, Fault};
 use crate::roads::junctions;
 use crate::roads::key::turn_key;
 
@@ -62,7 +62,7 @@ impl TurnSet<'_> {
         let pack = |turn: &TurnCertificate| CompactCertificate::turn(turn).map_err(|why| (turn.turn.get(), why));
         let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<CompactCertificate>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
-        sets::check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;
+        check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;
         let plans = self.certificates.iter_mut().filter_map(|turn| turn.plan.take()).collect();
         Ok(PackedSet { rows, plans })
     }
