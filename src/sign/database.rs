@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
+use super::hex::{hex, unhex};
 use super::key::{PrivateKey, PublicKey};
-use super::statement::{Refusal, SignError, Signed, Signer, hex, unhex};
+use super::statement::{Refusal, SignError, Signed, Signer};
 use crate::store::{Database, SignatureRecord};
 
 /// Signs what the database holds now. An older signature of the same key is replaced.

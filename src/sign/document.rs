@@ -5,8 +5,9 @@
 
 use serde_json::Value;
 
+use super::hex::{hex, unhex};
 use super::key::{PrivateKey, PublicKey};
-use super::statement::{Refusal, Signed, Signer, hex, unhex};
+use super::statement::{Refusal, Signed, Signer};
 use crate::seal;
 
 /// Where the member begins.

@@ -10,7 +10,7 @@ use ed25519_dalek::pkcs8::{DecodePrivateKey as _, DecodePublicKey as _, EncodePr
 use ed25519_dalek::pkcs8::{KeypairBytes, spki};
 use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
 
-use super::statement::hex;
+use super::hex::hex;
 
 /// A key has some hundred bytes; with the text that OpenSSL can put before it, some thousand.
 const MOST_BYTES: u64 = 1 << 16;

@@ -7,6 +7,7 @@
 //! | --- | --- |
 //! | `key` | Ed25519 keys in the files of OpenSSL |
 //! | `statement` | what a signature says of its signer |
+//! | `hex` | bytes as hexadecimal digits |
 //! | `document` | certificate files |
 //! | `database` | databases |
 //!
@@ -54,6 +55,7 @@
 
 mod database;
 mod document;
+mod hex;
 mod key;
 mod statement;
 

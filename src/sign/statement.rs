@@ -1,10 +1,10 @@
 //! What a signature says of its signer, and why a signature is refused.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::hex::{hex, unhex};
 use super::key::{PrivateKey, PublicKey};
 use crate::program::PROGRAM;
 use crate::store::StoreError;
@@ -144,28 +144,5 @@ impl Signed {
 
     pub(super) fn changed(&self, changed: Vec<String>) -> Refusal {
         Refusal::Changed { fingerprint: self.key.fingerprint(), changed }
-    }
-}
-
-/// Bytes as small hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
-}
-
-/// The bytes of small hexadecimal digits. `None`: another length, or another character.
-pub(super) fn unhex<const N: usize>(text: &str) -> Option<[u8; N]> {
-    let digits: Vec<u8> = text.bytes().map(digit).collect::<Option<_>>()?;
-    let bytes: Vec<u8> = digits.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect();
-    if digits.len() == 2 * N { bytes.try_into().ok() } else { None }
-}
-
-fn digit(character: u8) -> Option<u8> {
-    match character {
-        b'0'..=b'9' => Some(character - b'0'),
-        b'a'..=b'f' => Some(character - b'a' + 10),
-        _ => None,
     }
 }
