@@ -13,11 +13,10 @@ use netcert::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::explain::wrapped;
 use crate::cli::arguments::values::TableFormat;
 use crate::cli::database::fleet::Fleet;
 use crate::cli::output::table::Table;
-use crate::cli::output::{results, write_picture};
+use crate::cli::output::{results, wrapped, write_picture};
 
 /// The angles that a turn may have, degrees. A sharper one has no kerb return.
 const ANGLES_DEG: RangeInclusive<f64> = 15.0..=145.0;

@@ -11,10 +11,10 @@ use netcert::stet::{Certificate, Model, Options};
 use netcert::words::Named;
 
 use super::Session;
-use super::explain::{wrapped, write_picture};
+use super::explain::write_picture;
 use crate::cli::arguments::values::metres;
 use crate::cli::database::fleet::Fleet;
-use crate::cli::output::results;
+use crate::cli::output::{results, wrapped};
 
 /// The file is read into memory; 64 MiB hold a million points.
 const MAX_FILE_BYTES: u64 = 64 << 20;

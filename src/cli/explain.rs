@@ -25,7 +25,7 @@ use crate::cli::arguments::vehicle_args::{PolicyArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::measurements;
 use crate::cli::output::table::Table;
-use crate::cli::output::{self, printable, results};
+use crate::cli::output::{self, printable, results, wrapped};
 
 /// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;
@@ -321,25 +321,6 @@ pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::R
         writeln!(out, "{}", wrapped(hint, "  "))?;
     }
     writeln!(out, "\n{}", wrapped(&words.scope, ""))
-}
-
-/// Wraps a text into lines of at most 100 characters. The second and later lines begin with `indent`.
-pub(super) fn wrapped(text: &str, indent: &str) -> String {
-    let (mut out, mut column) = (String::new(), 0);
-    for word in text.split(' ') {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length > 100 {
-            out.push('\n');
-            out += indent;
-            column = indent.len();
-        } else if column > 0 {
-            out.push(' ');
-            column += 1;
-        }
-        out += word;
-        column += length;
-    }
-    out
 }
 
 /// Writes the picture of an explanation into a file, as SVG.

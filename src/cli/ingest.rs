@@ -12,8 +12,7 @@ use super::Session;
 use crate::cli::arguments::certify_options::{self, CertifyOptions};
 use crate::cli::arguments::values::country_code;
 use crate::cli::database::fleet::Fleet;
-use crate::cli::output::grouped;
-use crate::cli::session::progress::human;
+use crate::cli::output::{grouped, human};
 
 /// Read an OpenStreetMap extract or Overture's files, certify the roads, and write a GeoPackage.
 ///

@@ -15,15 +15,14 @@ use netcert::words::{Named, VerdictKind, at_local_time, verdict_words};
 
 use super::Session;
 use crate::cli::arguments::area;
-use crate::cli::arguments::relative::{self, RelativeArgs};
+use crate::cli::arguments::relative::RelativeArgs;
 use crate::cli::arguments::values::{metres, signed_metres, word};
 use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::fleet;
 use crate::cli::database::on_demand::{self, Coverage};
 use crate::cli::output::rows::{Format, Head, Sink};
-use crate::cli::output::turn_rows;
-use crate::cli::output::{km, results};
+use crate::cli::output::{km, relative, results, turn_rows};
 
 /// List which roads a vehicle may use, and why it may not use the others.
 ///

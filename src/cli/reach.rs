@@ -11,10 +11,9 @@ use netcert::words::at_local_time;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::explain::wrapped;
 use crate::cli::arguments::position::place;
 use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
-use crate::cli::output::{printable, results};
+use crate::cli::output::{printable, results, wrapped};
 
 /// Find the certified roads that a vehicle can reach from a place, and those from which it can come back.
 ///

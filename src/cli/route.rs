@@ -19,13 +19,11 @@ use netcert::stop::Stop;
 use netcert::words::{Named, at_local_time};
 
 use super::Session;
-use super::explain::wrapped;
 use crate::cli::arguments::position::place;
-use crate::cli::arguments::relative::{self, RelativeArgs};
+use crate::cli::arguments::relative::RelativeArgs;
 use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
-use crate::cli::output::sheet;
 use crate::cli::output::table::Table;
-use crate::cli::output::{printable, results};
+use crate::cli::output::{printable, relative, results, sheet, wrapped};
 
 /// Find the best certified route of a vehicle, with one certificate over the whole route, or what blocks it.
 ///

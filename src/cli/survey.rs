@@ -16,13 +16,12 @@ use netcert::words::Named as _;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::explain::wrapped;
 use crate::cli::arguments::position::place;
 use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
 use crate::cli::output::rows::csv;
 use crate::cli::output::sheet;
 use crate::cli::output::table::Table;
-use crate::cli::output::{km, printable, results};
+use crate::cli::output::{km, printable, results, wrapped};
 
 /// Find the measurements that would open most: widths, kerb radii and paved junctions that somebody can measure on site.
 ///

@@ -5,12 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use jiff::civil::DateTime;
 use netcert::osm::facts::Policy;
-use netcert::store::Database;
-use netcert::vehicle::Vehicle;
 
 use crate::cli::arguments::values::{local_time, word};
-use crate::cli::database::fleet::{self, Fleet};
-use crate::cli::database::on_demand::{Coverage, RequiredSet};
 
 #[derive(Args)]
 pub(crate) struct VehicleArgs {
@@ -19,7 +15,7 @@ pub(crate) struct VehicleArgs {
     pub(crate) id: String,
     /// A file that defines the vehicle, if neither the catalogue nor the database does.
     #[arg(long = "vehicle-file", value_name = "F.toml")]
-    files: Vec<PathBuf>,
+    pub(crate) files: Vec<PathBuf>,
 }
 
 // A struct of its own, because verbs have other options between this one and those of the vehicle.
@@ -37,26 +33,4 @@ pub(crate) struct TimeArgs {
     /// as `unknown: time`.
     #[arg(long, value_name = "2026-12-01T08:00", value_parser = local_time)]
     pub(crate) at: Option<DateTime>,
-}
-
-impl VehicleArgs {
-    /// The vehicle's certificates, for a verb that makes them if they are missing.
-    pub(crate) fn required(
-        &self,
-        policy: Option<Policy>,
-        coverage: Coverage,
-        command: &'static str,
-    ) -> RequiredSet<'_> {
-        RequiredSet { vehicle: &self.id, files: &self.files, policy, coverage, command }
-    }
-
-    /// The vehicle's definition.
-    pub(crate) fn definition(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
-        fleet::definition(database, &self.id, &self.files)
-    }
-
-    /// Whether one of the user's files defines the vehicle.
-    pub(crate) fn is_own(&self) -> anyhow::Result<bool> {
-        Ok(Fleet::new(&self.files)?.own.contains(&self.id))
-    }
 }

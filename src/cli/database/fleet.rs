@@ -6,6 +6,8 @@ use anyhow::Context as _;
 use netcert::store::Database;
 use netcert::vehicle::{Catalogue, Vehicle};
 
+use crate::cli::arguments::vehicle_args::VehicleArgs;
+
 /// The built-in catalogue extended by the user's files, and the ids of the user's vehicles.
 pub(crate) struct Fleet {
     pub(crate) catalogue: Catalogue,
@@ -39,5 +41,17 @@ pub(crate) fn definition(database: &mut Database, id: &str, files: &[PathBuf]) -
     match kept(database, id)? {
         Some(vehicle) if !fleet.own.iter().any(|own| own == id) => Ok(vehicle),
         _ => Ok(fleet.catalogue.get(id)?.clone()),
+    }
+}
+
+impl VehicleArgs {
+    /// The vehicle's definition.
+    pub(crate) fn definition(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
+        definition(database, &self.id, &self.files)
+    }
+
+    /// Whether one of the user's files defines the vehicle.
+    pub(crate) fn is_own(&self) -> anyhow::Result<bool> {
+        Ok(Fleet::new(&self.files)?.own.contains(&self.id))
     }
 }

@@ -4,8 +4,7 @@ use std::io::Write;
 
 use netcert::rows::Measurement;
 
-use crate::cli::explain::wrapped;
-use crate::cli::output::printable;
+use crate::cli::output::{printable, wrapped};
 
 /// Prints a line for each measurement.
 pub(crate) fn tell(out: &mut dyn Write, all: &[Measurement]) -> std::io::Result<()> {

@@ -12,6 +12,7 @@ use serde_json::json;
 
 use crate::cli::Session;
 use crate::cli::arguments::certify_options;
+use crate::cli::arguments::vehicle_args::VehicleArgs;
 use crate::cli::database::fleet;
 
 /// What a set has certificates of.
@@ -34,6 +35,18 @@ pub(crate) struct RequiredSet<'a> {
     pub(crate) coverage: Coverage,
     /// The verb's name, for the `run` record.
     pub(crate) command: &'static str,
+}
+
+impl VehicleArgs {
+    /// The vehicle's certificates, for a verb that makes them if they are missing.
+    pub(crate) fn required(
+        &self,
+        policy: Option<Policy>,
+        coverage: Coverage,
+        command: &'static str,
+    ) -> RequiredSet<'_> {
+        RequiredSet { vehicle: &self.id, files: &self.files, policy, coverage, command }
+    }
 }
 
 impl RequiredSet<'_> {

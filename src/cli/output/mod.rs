@@ -1,5 +1,6 @@
 //! The two output streams: results go to standard output, everything else to standard error.
 
+pub(crate) mod relative;
 pub(crate) mod relative_stats;
 pub(crate) mod rows;
 pub(crate) mod sheet;
@@ -8,8 +9,10 @@ pub(crate) mod turn_rows;
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use anyhow::anyhow;
+use indicatif::HumanDuration;
 
 /// Standard output with a buffer. The caller must flush it and handle the error.
 pub(crate) fn results() -> BufWriter<StdoutLock<'static>> {
@@ -57,4 +60,28 @@ pub(crate) fn km(metres: f64) -> String {
 /// Text from a map or file, made safe for a terminal: control characters are replaced.
 pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+/// A duration in words for people.
+pub(crate) fn human(seconds: f64) -> String {
+    if seconds < 60.0 { format!("{seconds:.1} s") } else { HumanDuration(Duration::from_secs_f64(seconds)).to_string() }
+}
+
+/// Wraps a text into lines of at most 100 characters. The second and later lines begin with `indent`.
+pub(crate) fn wrapped(text: &str, indent: &str) -> String {
+    let (mut out, mut column) = (String::new(), 0);
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > 100 {
+            out.push('\n');
+            out += indent;
+            column = indent.len();
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += word;
+        column += length;
+    }
+    out
 }

@@ -10,8 +10,7 @@ use netcert::rows::{Cell, Column, EdgeRow, Relative};
 use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
-use crate::cli::arguments::relative;
-use crate::cli::output::printable;
+use crate::cli::output::{printable, relative};
 
 /// Form of the answer.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

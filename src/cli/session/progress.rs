@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use netcert::account::AccountRow;
 use netcert::pipeline::Summary;
 use netcert::reporter::Reporter;
@@ -17,7 +17,7 @@ use netcert::stop::Stop;
 use netcert::watch::{self, Patience};
 
 use crate::cli::output::table::Table;
-use crate::cli::output::{grouped, tell};
+use crate::cli::output::{grouped, human, tell};
 use crate::cli::session::stage::Stage;
 
 /// Seconds between two lines of a stage where no bar can be shown.
@@ -232,9 +232,4 @@ impl Reporter for Progress {
     fn note(&self, text: &str) {
         self.say(&format!("note: {text}"));
     }
-}
-
-/// A duration in words for people.
-pub(crate) fn human(seconds: f64) -> String {
-    if seconds < 60.0 { format!("{seconds:.1} s") } else { HumanDuration(Duration::from_secs_f64(seconds)).to_string() }
 }

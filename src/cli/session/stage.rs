@@ -4,8 +4,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::HumanBytes;
 
-use crate::cli::output::grouped;
-use crate::cli::session::progress::human;
+use crate::cli::output::{grouped, human};
 
 /// A stage that runs.
 pub(crate) struct Stage {
