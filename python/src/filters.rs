@@ -1,15 +1,13 @@
 //! Which rows a table has.
 
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::rows::Bounds;
 use netcert::store::{Area, QueryOptions, TurnQuery};
 use netcert::words::VerdictKind;
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::region::named;
+use crate::arguments::{bounds, named};
 
 /// Which edges or turns a table has. `None` leaves a filter out. The names are those of `netcert/filters.py`.
 pub(crate) struct Filters {
@@ -56,16 +54,4 @@ fn member<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str
         // Python 3.10 has no notes.
         let _ = error.value(given.py()).call_method1("add_note", (format!("while processing '{name}'"),));
     })
-}
-
-/// A box from `(west, south, east, north)`. West is greater than east in a box over the 180th meridian.
-pub(crate) fn bounds(bbox: Option<[f64; 4]>) -> PyResult<Option<Bounds>> {
-    let Some([west, south, east, north]) = bbox else { return Ok(None) };
-    let (lon, lat) = (|x: f64| (-180.0..=180.0).contains(&x), |y: f64| (-90.0..=90.0).contains(&y));
-    if !(lon(west) && lon(east) && lat(south) && lat(north) && south <= north) {
-        return Err(PyValueError::new_err(format!(
-            "bbox: ({west}, {south}, {east}, {north}); expected degrees: (west, south, east, north)"
-        )));
-    }
-    Ok(Some(Bounds { west, south, east, north }))
 }

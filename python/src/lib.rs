@@ -23,6 +23,7 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod answer;
+mod arguments;
 mod certificate;
 mod corridor;
 mod error;

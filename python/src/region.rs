@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use netcert::osm::facts::Policy;
 use netcert::region::Region;
-use netcert::route::{Measure, Planner, Position, Question};
+use netcert::route::{Measure, Planner, Question};
 use netcert::rows::{EdgeRow, TurnRow};
 use netcert::verify::{Request, verify};
 use netcert::words::Named;
@@ -15,8 +15,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answer::Answer;
+use crate::arguments::{bounds, named, position};
 use crate::explanation::Explanation;
-use crate::filters::{Filters, bounds};
+use crate::filters::Filters;
 use crate::rows::{Columns, RowBatches, of_arrow};
 use crate::vehicle::Vehicle;
 use crate::verification::Verification;
@@ -55,21 +56,6 @@ impl RegionFile {
             None => py.detach(|| self.region().usual_policy()).map_err(|e| error::of_region(&e)),
         }
     }
-}
-
-/// The value with this word.
-pub(crate) fn named<T: Named>(argument: &str, word: &str) -> PyResult<T> {
-    T::named(word).ok_or_else(|| {
-        let all = T::ALL.iter().map(|value| format!("{:?}", value.name())).collect::<Vec<_>>().join(", ");
-        PyValueError::new_err(format!("{argument}: {word:?}; expected one of {all}"))
-    })
-}
-
-fn position(lon: f64, lat: f64) -> PyResult<Position> {
-    if (-180.0..=180.0).contains(&lon) && (-90.0..=90.0).contains(&lat) {
-        return Ok(Position { lon, lat });
-    }
-    Err(PyValueError::new_err(format!("({lon}, {lat}) is no place; expected (longitude, latitude) in degrees")))
 }
 
 #[pymethods]

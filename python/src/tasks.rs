@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 
+use crate::arguments::named;
 use crate::certificate::options;
-use crate::region::named;
 use crate::vehicle::Vehicle;
 use crate::{error, work};
 
