@@ -49,7 +49,7 @@
 //! holds there if the deviation is no greater than what it concedes, or the distance from a segment beside it and the
 //! deviation across that segment together.
 
-mod kept;
+mod clearance;
 mod least;
 mod piece;
 mod taken;

@@ -1,6 +1,6 @@
 //! Turned directions, and what is said of places outside.
 
-use super::super::kept::{TURNS, turned};
+use super::super::clearance::{TURNS, turned};
 use super::*;
 
 /// Beside a corner of a body the best direction is not the shortest way. Its lever is elsewhere on the axis.
