@@ -1,11 +1,10 @@
-//! Tests the walls of the code: that the checker shares nothing with what it checks, which crate knows which, that modules go in no circle, and
-//! that they lie in folders in one way. Cargo keeps the crates apart: no manifest of a checker names the prover.
+//! Tests the walls of the code: that the checker shares nothing with what it checks, which crate knows which, and that modules lie in folders
+//! in one way. Cargo keeps the crates apart: no manifest of a checker names the prover.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Rust files of a folder of the repository.
-fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+pub(super) fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
     while let Some(folder) = folders.pop() {
@@ -37,7 +36,7 @@ fn dependencies(name: &str) -> Vec<String> {
 }
 
 /// The crates in `crates/`.
-fn crates() -> Vec<String> {
+pub(super) fn crates() -> Vec<String> {
     let folders = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates")).unwrap();
     let mut names: Vec<String> =
         folders.map(|folder| folder.unwrap().file_name().to_string_lossy().into_owned()).collect();
@@ -92,53 +91,6 @@ fn the_checker_of_one_corridor_is_smaller_than_the_prover() {
     let (checker, prover) = (lines("crates/check/src"), lines("crates/kernel/src/stet"));
     println!("check {checker} lines, stet {prover}");
     assert!(checker < prover);
-}
-
-/// The modules of a crate that each of them names, tests aside.
-fn modules(folder: &str) -> BTreeMap<String, BTreeSet<String>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let mut named: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for (path, text) in sources(folder) {
-        let inner = path.strip_prefix(&root).unwrap();
-        let module = inner.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs").to_owned();
-        let of_tests = inner.iter().any(|part| part == "tests" || part == "tests.rs");
-        if of_tests || ["lib", "main", "cli"].contains(&module.as_str()) {
-            continue;
-        }
-        let deep = inner.iter().count() - usize::from(inner.ends_with("mod.rs"));
-        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
-        let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
-        let above = "super::".repeat(deep);
-        let paths = lines.flat_map(|line| {
-            let from_root = line.split("crate::").skip(1);
-            let from_below = line.split(above.as_str()).skip(1).filter(|path| !path.starts_with("super::"));
-            from_root.chain(from_below)
-        });
-        let name = |path: &str| path.split(|c: char| !c.is_ascii_lowercase() && c != '_').next().unwrap().to_owned();
-        named.entry(module).or_default().extend(paths.map(name));
-    }
-    let all: BTreeSet<String> = named.keys().cloned().collect();
-    for (module, others) in &mut named {
-        others.retain(|other| other != module && all.contains(other));
-    }
-    named
-}
-
-/// Modules from which nothing leads are taken away until none is left, or only a circle.
-#[test]
-fn modules_are_in_no_circle() {
-    assert!(modules("crates/rows/src")["relative"].contains("certificate"), "{:?}", modules("crates/rows/src"));
-    let folders = crates().into_iter().map(|name| format!("crates/{name}/src")).chain(["src".to_owned()]);
-    for folder in folders {
-        let mut named = modules(&folder);
-        while let Some(free) = named.iter().find(|(_, others)| others.is_empty()).map(|(module, _)| module.clone()) {
-            named.remove(&free);
-            named.values_mut().for_each(|others| {
-                others.remove(&free);
-            });
-        }
-        assert!(named.is_empty(), "{folder}: in or above a circle: {named:#?}");
-    }
 }
 
 #[test]

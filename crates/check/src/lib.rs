@@ -3,7 +3,7 @@
 //! The crate is written from `docs/proof.md`. Its Cargo manifest keeps it independent of the kernel. It is pure: no
 //! input or output.
 //!
-//! Files use only those above them in this table. `tests/program/walls.rs` tests that there is no circle.
+//! Files use only those above them in this table. `tests/program/circles.rs` tests that there is no circle.
 //!
 //! | file | for |
 //! | --- | --- |
