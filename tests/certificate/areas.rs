@@ -13,7 +13,7 @@ use netcert_testing::oracle::claim::claim;
 use netcert_testing::oracle::crossing::{Crossing, Manoeuvre};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::planner::{drivable, room_m};
-use netcert_testing::thorough;
+use netcert_testing::thorough::cases;
 use rayon::prelude::*;
 
 const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"];
@@ -23,10 +23,6 @@ const PLACES: usize = 5;
 const TURNS: usize = 6;
 /// Room undisturbed with which a turn counts as drivable with some to spare, metres.
 const SPARE_M: f64 = 0.3;
-
-fn cases(usual: u64) -> u64 {
-    thorough::cases(usual, 10 * usual)
-}
 
 /// An attacked claim.
 struct Attacked {
@@ -98,12 +94,12 @@ fn besieged(what: &str, crossings: u64, seed: u64, draw_crossing: impl Fn(&mut D
 
 #[test]
 fn no_body_comes_closer_to_what_lies_outside_an_area_than_rsc() {
-    besieged("crossing", cases(100), 0xa4ea_0000, Crossing::drawn);
+    besieged("crossing", cases(50, 1_000), 0xa4ea_0000, Crossing::drawn);
 }
 
 #[test]
 fn islands_in_the_mouths_of_a_crossing_are_kept_clear_of() {
-    besieged("crossing with islands", cases(60), 0x151a_0000, Crossing::with_islands);
+    besieged("crossing with islands", cases(30, 600), 0x151a_0000, Crossing::with_islands);
 }
 
 /// The planner knows nothing of certificates and disturbances, so what it finds is no more than a turn to certify.
@@ -125,7 +121,7 @@ fn most_turns_that_can_be_driven_with_room_to_spare_are_certified() {
         };
         VEHICLES.iter().filter_map(recalled).collect::<Vec<_>>()
     };
-    let turns: Vec<(bool, String)> = (0..20_u64).into_par_iter().flat_map_iter(one).collect();
+    let turns: Vec<(bool, String)> = (0..cases(20, 40_u64)).into_par_iter().flat_map_iter(one).collect();
     let certified = turns.iter().filter(|(safe, _)| *safe).count();
     println!("of {} turns with {SPARE_M} m to spare {certified} are certified; the others:", turns.len());
     for (_, words) in turns.iter().filter(|(safe, _)| !safe) {
@@ -177,7 +173,7 @@ fn the_second_program_confirms_turns_and_refutes_five_centimetres_more() {
         };
         VEHICLES.iter().filter_map(&mut judged).collect::<Vec<_>>()
     };
-    let turns: Vec<(Vec<String>, Option<bool>)> = (0..cases(60)).into_par_iter().flat_map_iter(one).collect();
+    let turns: Vec<(Vec<String>, Option<bool>)> = (0..cases(36, 600)).into_par_iter().flat_map_iter(one).collect();
     let alarms: Vec<&String> = turns.iter().flat_map(|(alarms, _)| alarms).collect();
     let fit: Vec<bool> = turns.iter().filter_map(|(_, refuted)| *refuted).collect();
     let refuted = fit.iter().filter(|refuted| **refuted).count();

@@ -66,7 +66,7 @@ fn edges(route: &Value) -> Vec<i64> {
 
 #[test]
 fn routes_are_certified_once_their_conditions_are_measured() {
-    let (routes, under_conditions) = cases((10, 8), (36, 30));
+    let (routes, under_conditions) = cases((6, 4), (36, 30));
     let (mut drawn, mut nodes, mut ways) = (Drawn(7), Vec::new(), Vec::new());
     let trips: Vec<[String; 2]> = (0..routes).map(|number| draw(number, &mut drawn, &mut nodes, &mut ways)).collect();
     let place = WorkFolder::empty().file("roads.osm.pbf", write_extract(&nodes, &ways));

@@ -10,7 +10,7 @@ use netcert_testing::thorough::cases;
 const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
 /// Runs that are killed.
 fn kills() -> u32 {
-    cases(24, 100)
+    cases(16, 100)
 }
 
 /// Portion by portion, too. The drawn region lies in four cells.
