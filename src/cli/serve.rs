@@ -3,9 +3,11 @@
 use std::io::Write as _;
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use anyhow::Context as _;
 use clap::Args;
-use netcert::serve::{BaseMap, Limits, Options, Server};
+use netcert::serve::{BaseMap, Editing, Limits, Options, Server};
 
 use super::Session;
 use crate::cli::database::DatabaseArgs;
@@ -14,14 +16,15 @@ use crate::cli::session::stop::stop;
 
 /// Show the database on a map in the browser, with vector tiles and a JSON interface.
 ///
-/// The server prints its address when it is ready; Ctrl-C ends it. It only reads its databases. Unless options say
-/// otherwise, only this machine can reach the server, and the page sends requests to no other server.
+/// The server prints its address when it is ready; Ctrl-C ends it. Unless options say otherwise, it only reads its
+/// databases, only this machine can reach it, and the page sends requests to no other server.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert serve
   netcert serve --db region.gpkg --addr 127.0.0.1:0         listen on any free port
   netcert serve --db region.gpkg --before old.gpkg          what changed since then is a layer on the map
+  netcert serve --edit                                      measurements can be added on the page
   netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
 
 /api/openapi.json describes the JSON interface. If a database is replaced while the server runs,
@@ -38,6 +41,12 @@ pub(crate) struct Serve {
     /// Allow an address that other machines can reach. The server has no log-in and no encryption.
     #[arg(long)]
     allow_remote: bool,
+    /// Let the page add measurements to the database and remove them. Whatever sees a change is certified again.
+    #[arg(long)]
+    edit: bool,
+    /// As --edit, but only for who sends the token of this file, a line of 16 characters or more.
+    #[arg(long, value_name = "FILE", conflicts_with = "edit")]
+    edit_token: Option<PathBuf>,
     /// Tiles of an online map that the reader of the page can switch on beneath the roads [default: none; no request
     /// leaves this machine].
     #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
@@ -54,12 +63,15 @@ impl Serve {
             (map, _) => map,
         };
         crate::cli::session::logger::install();
+        let clock = session.clock;
         let server = Server::bind(Options {
             db: self.db.path()?,
             before: self.before.clone(),
             addr: self.addr,
             allow_remote: self.allow_remote,
             base_map,
+            editing: self.editing()?,
+            now: Arc::new(move || clock.now()),
             limits: Limits::default(),
         })?;
         let mut out = results();
@@ -69,5 +81,13 @@ impl Serve {
         server.run(stop());
         session.progress.say("stopped");
         Ok(())
+    }
+
+    fn editing(&self) -> anyhow::Result<Editing> {
+        let Some(path) = &self.edit_token else {
+            return Ok(if self.edit { Editing::Local } else { Editing::Off });
+        };
+        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        Editing::token(&text).map_err(|what| anyhow::anyhow!("{}: {what}", path.display()))
     }
 }

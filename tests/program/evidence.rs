@@ -32,7 +32,7 @@ fn sql<T>(place: &WorkFolder, work: impl AsyncFnOnce(&mut SqliteConnection) -> T
 }
 
 /// All rows of tables, byte for byte.
-fn rows_of<'t>(place: &WorkFolder, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<String>> {
+pub(crate) fn rows_of<'t>(place: &WorkFolder, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<String>> {
     sql(place, async |c| {
         let mut all = BTreeMap::new();
         for &table in tables {
@@ -56,13 +56,13 @@ fn ids(place: &WorkFolder, statement: &str) -> Vec<Vec<i64>> {
     })
 }
 
-fn edges_of(place: &WorkFolder) -> Vec<Value> {
+pub(crate) fn edges_of(place: &WorkFolder) -> Vec<Value> {
     let answer = place.netcert(&format!("query --vehicle {VEHICLE} --format json")).succeeds();
     answer.json()["edges"].as_array().unwrap().clone()
 }
 
 /// The edges of the stroke of an edge.
-fn stroke_of(place: &WorkFolder, edge_id: i64) -> Vec<i64> {
+pub(crate) fn stroke_of(place: &WorkFolder, edge_id: i64) -> Vec<i64> {
     let statement = format!(
         "SELECT e.edge_id FROM stroke AS s JOIN stroke_edge AS p ON p.position > s.edge_start AND p.position <= s.edge_end \
          JOIN edge AS e ON e.fid = p.fid WHERE s.stroke_no = (SELECT stroke_no FROM stroke JOIN stroke_edge \

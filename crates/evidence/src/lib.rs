@@ -25,7 +25,7 @@ mod values;
 
 pub use error::{EvidenceError, Fault};
 pub use matching::{Match, match_rows};
-pub use read::read;
+pub use read::{read, read_geojson};
 pub use register::Edges;
 pub use register::{Conflict, Decision, Entry, State, Target, Usage, decide, entries, match_again, without_doubles};
 pub use row::{Along, Place, Quantity, Row, Value};

@@ -18,6 +18,21 @@ use crate::words::Named as _;
 /// The file cannot be read, or something in it is faulty. All faulty rows are named.
 pub fn read(path: &Path) -> Result<Vec<Row>, EvidenceError> {
     let records = formats::records(path).map_err(|failure| failure.at(path))?;
+    rows(path, records)
+}
+
+/// Reads measurements in GeoJSON that are no file, such as those of a request. `name` stands for the file in what is said.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_geojson(name: &str, bytes: &[u8]) -> Result<Vec<Row>, EvidenceError> {
+    let path = Path::new(name);
+    let records = formats::geojson(bytes).map_err(|failure| failure.at(path))?;
+    rows(path, records)
+}
+
+/// The rows of all records, or everything that is wrong with them.
+fn rows(path: &Path, records: Vec<Record>) -> Result<Vec<Row>, EvidenceError> {
     if records.is_empty() {
         return Err(Failure::File("has no rows; nothing was read".to_owned()).at(path));
     }

@@ -24,6 +24,7 @@ pub(super) struct App {
     cache: Cache,
     quick: Lane,
     slow: Lane,
+    changes: Lane,
 }
 
 /// The lane for a piece of work.
@@ -45,6 +46,7 @@ impl App {
             cache: Cache::new(limits.cache_bytes),
             quick: Lane::new(quick.at_a_time, quick.waiting, quick.time),
             slow: Lane::new(slow.at_a_time, slow.waiting, slow.time),
+            changes: Lane::new(1, limits.changes.waiting, limits.changes.time),
             options,
         }
     }
@@ -111,6 +113,19 @@ impl App {
     ) -> Response {
         match self.try_answer(&ask, pace, work).await {
             Ok((stored, keep)) => stored.respond(&ask, keep),
+            Err(problem) => problem.into_response(),
+        }
+    }
+
+    /// Changes the database, one change after the other. A change that was begun is finished, whoever goes away.
+    pub(super) async fn change(
+        self: &Arc<Self>,
+        ask: Ask,
+        work: impl FnOnce(&Options, &Ask) -> Result<Stored, Problem> + Send + 'static,
+    ) -> Response {
+        let (app, asked) = (Arc::clone(self), ask.clone());
+        match self.changes.run(move |_| work(&app.options, &asked)).await {
+            Ok(stored) => stored.respond(&ask, Keep::Ask),
             Err(problem) => problem.into_response(),
         }
     }

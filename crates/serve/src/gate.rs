@@ -1,6 +1,7 @@
 //! The checks that every request passes, and the security headers of every response.
 //!
-//! A request is refused if its method is not `GET` or `HEAD`, if it has a body, or if its address is too long. Unless
+//! A request is refused if its method is not `GET` or `HEAD`, if it has a body, or if its address is too long. Changes of measurements have
+//! checks of their own (`editing.rs`). Unless
 //! --allow-remote is given, a request is also refused if its `Host` is not a loopback name; otherwise a page of another
 //! site could read answers by DNS rebinding. Every refusal writes one line to the log.
 
@@ -12,6 +13,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 
 use super::app::App;
+use super::editing;
 use super::lines::{self, Refused};
 use super::options::Options;
 use super::problem::Problem;
@@ -58,8 +60,9 @@ fn content_security_policy(options: &Options) -> String {
 }
 
 fn refusal(request: &Request, options: &Options) -> Option<Problem> {
-    if ![Method::GET, Method::HEAD].contains(request.method()) {
-        let detail = "this server only reads: GET and HEAD";
+    let change = editing::is_change(request, &options.editing);
+    if !change && ![Method::GET, Method::HEAD].contains(request.method()) {
+        let detail = "this server only reads here: GET and HEAD";
         return Some(Problem::new(StatusCode::METHOD_NOT_ALLOWED, "method", "The method is not allowed", detail));
     }
     let target = request.uri().path_and_query().map_or(0, |target| target.as_str().len());
@@ -68,8 +71,8 @@ fn refusal(request: &Request, options: &Options) -> Option<Problem> {
         return Some(Problem::new(StatusCode::URI_TOO_LONG, "too-long", "The address is too long", detail));
     }
     let headers = request.headers();
-    let length = headers.get(header::CONTENT_LENGTH).is_some_and(|length| length.as_bytes() != b"0");
-    if length || headers.contains_key(header::TRANSFER_ENCODING) {
+    let body = headers.get(header::CONTENT_LENGTH).is_some_and(|length| length.as_bytes() != b"0");
+    if !change && (body || headers.contains_key(header::TRANSFER_ENCODING)) {
         let detail = "requests have no body here";
         return Some(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "body", "A body is not wanted", detail));
     }
@@ -84,7 +87,7 @@ fn refusal(request: &Request, options: &Options) -> Option<Problem> {
         let detail = "this server answers to localhost and its own address; use the address it printed";
         return Some(Problem::new(StatusCode::MISDIRECTED_REQUEST, "host", "Not for this server", detail));
     }
-    None
+    if change { editing::refusal(request, host, &options.editing) } else { None }
 }
 
 /// Whether a `Host` is a loopback name or the server's own address, with any port.
@@ -111,6 +114,8 @@ mod tests {
             addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),
             allow_remote: false,
             base_map: None,
+            editing: editing::Editing::Off,
+            now: Arc::new(String::new),
             limits: super::super::Limits::default(),
         };
         for own in ["localhost", "LOCALHOST:8080", "127.0.0.1", "127.0.0.1:1", "[::1]:8080", "[::1]", "127.8.9.1"] {

@@ -37,6 +37,7 @@
 
 use netcert_base::{speed_profile, stop, vehicle, verdict, words};
 use netcert_certify as certify;
+use netcert_certify::reporter;
 use netcert_explain as explain;
 use netcert_explain::diff;
 use netcert_kernel::stet;
@@ -56,6 +57,7 @@ mod assets;
 mod cache;
 mod changes;
 mod drive;
+mod editing;
 mod gate;
 mod lines;
 mod memo;
@@ -72,5 +74,5 @@ mod served;
 mod tiles;
 mod work;
 
-pub use options::{BaseMap, LaneLimits, Limits, Options};
+pub use options::{BaseMap, Editing, LaneLimits, Limits, Options};
 pub use run::{ServeError, Server};

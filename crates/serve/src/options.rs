@@ -2,6 +2,7 @@
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The options of the server.
@@ -18,8 +19,52 @@ pub struct Options {
     /// The online map that the page may show beneath the roads, `https://…/{z}/{x}/{y}.png`. With `None` the page sends
     /// no request to another server.
     pub base_map: Option<BaseMap>,
+    /// Who may change the register of measurements.
+    pub editing: Editing,
+    /// The time now in UTC, for what changes are written into the database.
+    pub now: Arc<dyn Fn() -> String + Send + Sync>,
     /// The bounds.
     pub limits: Limits,
+}
+
+/// Who may change the register of measurements over the server.
+#[derive(Clone, PartialEq, Eq)]
+pub enum Editing {
+    /// Nobody. The server only reads.
+    Off,
+    /// Whoever reaches the server, which only this machine can.
+    Local,
+    /// Whoever sends this token.
+    Token(String),
+}
+
+impl Editing {
+    /// Fewer characters can be guessed.
+    pub const SHORTEST_TOKEN: usize = 16;
+
+    /// The token of a text: the text without white space around it.
+    ///
+    /// # Errors
+    /// The text is no token. The error says what is wrong.
+    pub fn token(text: &str) -> Result<Self, String> {
+        let token = text.trim();
+        if token.len() < Self::SHORTEST_TOKEN || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
+            return Err(format!(
+                "give one line of {} or more letters, digits and signs without spaces, such as `openssl rand -hex 16` prints",
+                Self::SHORTEST_TOKEN
+            ));
+        }
+        Ok(Self::Token(token.to_owned()))
+    }
+
+    /// The word for it in the description of what is served.
+    pub(super) fn word(&self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Local => "local",
+            Self::Token(_) => "token",
+        }
+    }
 }
 
 /// An online map to show beneath the roads.
@@ -80,6 +125,8 @@ pub struct Limits {
     pub quick: LaneLimits,
     /// Bounds of work that certifies (explanations, routes) or reads the whole database.
     pub slow: LaneLimits,
+    /// Bounds of changes of the database. One is made at a time, whatever is set here.
+    pub changes: LaneLimits,
     /// Size of the cache of finished answers, bytes.
     pub cache_bytes: usize,
     /// The greatest number of edges whose numbers are held in memory, for tiles and summaries.
@@ -100,6 +147,7 @@ impl Default for Limits {
         Self {
             quick: LaneLimits { at_a_time: processors.clamp(2, 16), waiting: 256, time: Duration::from_secs(15) },
             slow: LaneLimits { at_a_time: (processors / 2).clamp(1, 8), waiting: 16, time: Duration::from_secs(60) },
+            changes: LaneLimits { at_a_time: 1, waiting: 8, time: Duration::from_secs(600) },
             cache_bytes: 128 << 20,
             held_edges: 2_000_000,
             connections: 256,
@@ -114,6 +162,14 @@ impl Default for Limits {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn a_token_is_one_long_word() {
+        assert!(Editing::token("  0123456789abcdef\n") == Ok(Editing::Token("0123456789abcdef".to_owned())));
+        for wrong in ["", "0123456789abcde", "0123456789 abcdef", "0123456789abcdé0"] {
+            assert!(Editing::token(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn a_base_map_is_a_template_of_a_plain_host() {

@@ -67,6 +67,13 @@ impl Problem {
         Self { more: Box::new(more), ..problem }
     }
 
+    /// What was sent to be kept is faulty. `faults` name each fault.
+    pub(super) fn faulty(detail: impl Into<String>, faults: Vec<Value>) -> Self {
+        let title = "The measurements are faulty; nothing was kept";
+        let problem = Self::new(StatusCode::UNPROCESSABLE_ENTITY, "measurements", title, detail);
+        Self { more: Box::new(serde_json::Map::from_iter([("faults".to_owned(), faults.into())])), ..problem }
+    }
+
     /// The certificates were made by another version of the program.
     pub(super) fn stale(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, "stale", "The certificates are of another version", detail)
@@ -148,6 +155,9 @@ impl IntoResponse for Problem {
         }
         if self.status == StatusCode::METHOD_NOT_ALLOWED {
             headers.insert(header::ALLOW, HeaderValue::from_static("GET, HEAD"));
+        }
+        if self.status == StatusCode::UNAUTHORIZED {
+            headers.insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
         response
     }

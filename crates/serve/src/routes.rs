@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use axum::extract::State;
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, State};
 use axum::response::Response;
-use axum::routing::get;
+use axum::routing::{delete, get, post};
 use axum::{Router, middleware};
 
 use super::answer::Stored;
@@ -12,6 +13,7 @@ use super::api;
 use super::app::{App, Pace};
 use super::ask::Ask;
 use super::assets;
+use super::editing;
 use super::gate::gate;
 use super::problem::Problem;
 use super::served::Served;
@@ -27,6 +29,8 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
         api::changes::changes(&served.region, served.older.as_ref(), &served.comparisons, ask)
     }),
     ("/api/edges/{id}", Pace::Quick, |served, ask| api::edges::edge(&served.region, ask)),
+    ("/api/evidence", Pace::Quick, |served, ask| api::evidence::list(&served.region, ask)),
+    ("/api/evidence/{no}", Pace::Quick, |served, ask| api::evidence::one(&served.region, ask)),
     ("/api/explain/{id}", Pace::Slow, |served, ask| api::explain::explain(&served.region, &served.explanations, ask)),
     ("/api/explain/{id}/map.geojson", Pace::Slow, |served, ask| {
         api::explain::mapped(&served.region, &served.explanations, ask)
@@ -57,10 +61,13 @@ pub(super) fn router(app: Arc<App>) -> Router {
         router = router.route(path, get(answer));
     }
     router
+        .route(editing::EVIDENCE, post(add_evidence))
+        .route(&format!("{}/{{no}}", editing::EVIDENCE), delete(remove_evidence))
         .route("/healthz", get(health))
         .route("/api/region", get(region))
         .route("/api/openapi.json", get(openapi))
         .fallback(get(assets::asset))
+        .layer(DefaultBodyLimit::max(editing::MOST_BODY))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), gate))
         .with_state(app)
 }
@@ -74,11 +81,21 @@ async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
     .await
 }
 
+/// Adds measurements to the register.
+async fn add_evidence(State(app): State<Arc<App>>, ask: Ask, body: Bytes) -> Response {
+    app.change(ask, move |options, ask| api::evidence::add(options, ask, &body)).await
+}
+
+/// Removes a measurement from the register.
+async fn remove_evidence(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    app.change(ask, api::evidence::remove).await
+}
+
 /// Describes what is served.
 async fn region(State(app): State<Arc<App>>, ask: Ask) -> Response {
-    let base_map = app.options.base_map.clone();
+    let options = app.options.clone();
     let work = move |Served { region, older, state, .. }: &Served, ask: &Ask| {
-        api::region::region(region, older.as_ref(), state, base_map.as_ref(), ask)
+        api::region::region(region, older.as_ref(), state, &options, ask)
     };
     app.answer(ask, Pace::Quick, work).await
 }

@@ -21,7 +21,7 @@ use tokio::task::JoinSet;
 
 use super::app::App;
 use super::older::{Older, common};
-use super::options::{Limits, Options};
+use super::options::{Editing, Limits, Options};
 use super::region::{Identity, Region};
 use super::routes;
 use super::served::Served;
@@ -59,6 +59,20 @@ pub enum ServeError {
          --allow-remote to listen there anyway"
     )]
     Remote(SocketAddr),
+    /// Other machines could reach the address and change the database.
+    #[error(
+        "--edit: with --allow-remote other machines could change the database; --edit-token FILE names the token that they \
+         must send"
+    )]
+    RemoteEditing,
+    /// The database is to be changed, and this user may not write to it.
+    #[error("{db}: it cannot be written, so --edit can change nothing there: {source}")]
+    ReadOnly {
+        /// The database.
+        db: PathBuf,
+        /// The system's error.
+        source: std::io::Error,
+    },
     /// The port is taken, or this user may not listen on it.
     #[error("{addr}: cannot listen: {source}; --addr 127.0.0.1:0 picks a free port")]
     Listen {
@@ -87,10 +101,17 @@ impl Server {
     ///
     /// # Errors
     /// A database or the port cannot be opened. The older database is the served one, or has no vehicle in common with it. The address
-    /// is not loopback and `allow_remote` is false.
+    /// is not loopback and `allow_remote` is false. Changes are allowed to everybody, or cannot be written.
     pub fn bind(mut options: Options) -> Result<Self, ServeError> {
         if !options.addr.ip().is_loopback() && !options.allow_remote {
             return Err(ServeError::Remote(options.addr));
+        }
+        if options.editing == Editing::Local && options.allow_remote {
+            return Err(ServeError::RemoteEditing);
+        }
+        if options.editing != Editing::Off {
+            let writable = std::fs::OpenOptions::new().append(true).open(&options.db).map(drop);
+            writable.map_err(|source| ServeError::ReadOnly { db: options.db.clone(), source })?;
         }
         let older = options.before.as_deref().map(|before| older(before, &options.db)).transpose()?;
         let region = Region::open(&options.db)?.holding(options.limits.held_edges);

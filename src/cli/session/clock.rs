@@ -6,6 +6,7 @@ use jiff::Timestamp;
 
 const VARIABLE: &str = "SOURCE_DATE_EPOCH";
 
+#[derive(Clone, Copy)]
 pub(crate) struct Clock {
     stopped_at: Option<Timestamp>,
 }

@@ -11,7 +11,7 @@ const LONG: &str = "AU-ATRIPLE53";
 
 /// What is wrong with a value by a schema: the keywords that the document uses (`type`, `properties`, `required`,
 /// `additionalProperties`, `items`, `minItems`, `maxItems`, `enum`, `pattern` of digits, `anyOf`, `$ref`).
-fn faults(document: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
+pub(crate) fn faults(document: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
     if let Some(name) = schema["$ref"].as_str() {
         let pointer = name.strip_prefix('#').unwrap();
         return faults(document, document.pointer(pointer).unwrap(), value, at, found);
@@ -99,7 +99,11 @@ fn every_answer_has_the_described_form() {
         ("/api/region", "/api/region".to_owned()),
     ];
     let of_changes = of_changes.into_iter().map(|(path, target)| (&two, (path.to_owned(), target)));
-    let asked: Vec<(&Server, (String, String))> = asked.into_iter().chain(under_conditions).chain(of_changes).collect();
+    let measured = Server::over(measured(), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let of_measurements = [("/api/evidence", "/api/evidence"), ("/api/evidence/{no}", "/api/evidence/1")];
+    let of_measurements = of_measurements.map(|(path, target)| (&measured, (path.to_owned(), target.to_owned())));
+    let asked = asked.into_iter().chain(under_conditions).chain(of_changes).chain(of_measurements);
+    let asked: Vec<(&Server, (String, String))> = asked.collect();
     for (server, (path, target)) in &asked {
         let answers = &document["paths"][path]["get"]["responses"]["200"]["content"];
         let (kind, schema) =
@@ -123,6 +127,16 @@ fn every_answer_has_the_described_form() {
         faults(&document, &document["components"]["schemas"]["Problem"], &problem, "problem", &mut found);
     }
     assert_eq!(found, Vec::<String>::new());
+}
+
+/// The demo region with one measurement.
+fn measured() -> WorkFolder {
+    let place = WorkFolder::with_demo();
+    let edge = place.rows(VEHICLE)[0].edge.id;
+    let place =
+        place.file("survey.csv", format!("quantity,value,sigma,edge_id,source\nlane_width,3.3,0.02,{edge},laser\n"));
+    place.netcert("evidence add survey.csv").succeeds();
+    place
 }
 
 /// Routes under conditions, their sheets, and suppositions of an edge and a turn.

@@ -75,6 +75,14 @@ impl Server {
         self.raw(format!("GET {target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n{headers}\r\n").as_bytes())
     }
 
+    /// A request with a body and its length.
+    pub(crate) fn send(&self, method: &str, target: &str, headers: &str, body: &str) -> Reply {
+        let length = body.len();
+        let head =
+            format!("{method} {target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: {length}");
+        self.raw(format!("{head}\r\n{headers}\r\n{body}").as_bytes())
+    }
+
     pub(crate) fn get(&self, target: &str) -> Reply {
         self.with(target, "")
     }
@@ -165,6 +173,12 @@ impl Reply {
 
     pub(crate) fn json(&self) -> Value {
         serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {}", self.text()))
+    }
+
+    /// A good answer in JSON.
+    pub(crate) fn is_json(&self) -> Value {
+        assert_eq!((self.status, self.header("content-type")), (200, Some("application/json")), "{}", self.text());
+        self.json()
     }
 
     pub(crate) fn is_problem(&self, what: &str, status: u16) -> Value {

@@ -9,6 +9,7 @@ mod changes;
 mod conditional;
 mod cut_off;
 mod described;
+mod editing;
 pub(crate) mod http;
 mod load;
 mod refusals;

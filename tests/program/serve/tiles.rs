@@ -6,7 +6,7 @@ use std::io::Write as _;
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::rows::EdgeRow;
-use netcert::serve::{Limits, Options};
+use netcert::serve::{Editing, Limits, Options};
 use netcert::store::TurnQuery;
 use netcert::words::{Named, verdict_words};
 
@@ -166,6 +166,8 @@ fn tiles_from_memory_have_the_bytes_of_tiles_from_the_file() {
         addr: ([127, 0, 0, 1], 0).into(),
         allow_remote: false,
         base_map: None,
+        editing: Editing::Off,
+        now: std::sync::Arc::new(String::new),
         limits: Limits { held_edges: 0, ..Limits::default() },
     };
     let from_file = netcert::serve::Server::bind(options).unwrap();

@@ -5,7 +5,7 @@ use std::io::{BufReader, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use netcert::serve::{LaneLimits, Limits, Options, Server};
+use netcert::serve::{Editing, LaneLimits, Limits, Options, Server};
 
 use super::http::Reply;
 use netcert_testing::program::WorkFolder;
@@ -29,6 +29,8 @@ impl Narrow {
             addr: "127.0.0.1:0".parse().unwrap(),
             allow_remote: false,
             base_map: None,
+            editing: Editing::Off,
+            now: std::sync::Arc::new(String::new),
             limits: Limits { slow, ..Limits::default() },
         });
         let server = server.unwrap();

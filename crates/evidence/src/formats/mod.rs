@@ -48,6 +48,11 @@ pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
     }
 }
 
+/// All records of a text in GeoJSON.
+pub(super) fn geojson(bytes: &[u8]) -> Result<Vec<Record>, Failure> {
+    geojson::records(bytes)
+}
+
 fn by_name(path: &Path) -> Option<Format> {
     Some(match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "csv" | "tsv" | "tab" | "txt" => Format::Csv,

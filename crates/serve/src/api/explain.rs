@@ -21,6 +21,7 @@ use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
 use crate::store::{QueryOptions, TurnsOf};
+use crate::turns::TurnFacts;
 use crate::words::Named;
 
 /// Number of explanations to keep. Each has a picture and shapes for the map of some 100 kB.
@@ -154,6 +155,7 @@ fn of_turn(
     members["turn_id"] = json!(id.to_string());
     members["turn"] = json!(turn.title());
     let edge_id = |edge: EdgeNo| roads.network().edges.get(edge.index()).map(|edge| edge.id.to_string());
+    members["junction"] = json!(via_node(roads, &facts));
     members["from_edge"] = json!(edge_id(facts.movement.from));
     members["to_edge"] = json!(edge_id(facts.movement.to));
     let node = roads.network().edges.get(facts.movement.from.index());
@@ -169,6 +171,11 @@ fn of_turn(
     let mut map = explain::turn_geojson(&turn, stop).map_err(unmapped)?;
     map["netcert"]["measurements"] = members["measurements"].clone();
     Ok(Explained { members, picture: picture::turn(&turn), map })
+}
+
+/// The node at which a turn leaves its first road. It is text, as all ids are here.
+fn via_node(roads: &RoadIndex, facts: &TurnFacts) -> Option<String> {
+    roads.network().edges.get(facts.movement.from.index()).map(|edge| edge.to_node.to_string())
 }
 
 fn unmapped(error: MapError) -> Problem {

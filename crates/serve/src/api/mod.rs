@@ -5,6 +5,7 @@
 
 pub(super) mod changes;
 pub(super) mod edges;
+pub(super) mod evidence;
 pub(super) mod explain;
 pub(super) mod region;
 mod relative;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::answer::Stored;
 use super::super::ask::Ask;
 use super::super::older::Older;
-use super::super::options::BaseMap;
+use super::super::options::Options;
 use super::super::problem::Problem;
 use super::super::region::Region;
 use super::super::tiles::{MOST_ZOOM, backdrop};
@@ -23,23 +23,17 @@ pub(in super::super) fn region(
     region: &Region,
     older: Option<&Older>,
     state: &str,
-    base_map: Option<&BaseMap>,
+    options: &Options,
     ask: &Ask,
 ) -> Result<Stored, Problem> {
     ask.only(&[])?;
     let focus = region.read(Database::focus)?.or(region.extent);
-    let mut members = members(region, older, state, base_map, focus);
+    let mut members = members(region, older, state, options, focus);
     members["left_hand_traffic"] = json!(region.read(Database::left_hand_traffic)?);
     Ok(answered(&members))
 }
 
-fn members(
-    region: &Region,
-    older: Option<&Older>,
-    state: &str,
-    base_map: Option<&BaseMap>,
-    focus: Option<Bounds>,
-) -> Value {
+fn members(region: &Region, older: Option<&Older>, state: &str, options: &Options, focus: Option<Bounds>) -> Value {
     let ingest = region.ingest();
     let policies: Vec<&str> = Policy::ALL
         .iter()
@@ -71,7 +65,8 @@ fn members(
             "tiles": format!("/backdrop/{{z}}/{{x}}/{{y}}.mvt?state={state}"),
             "max_zoom": backdrop::MOST_ZOOM,
         })),
-        "base_map": base_map.map(|map| json!({"url": map.url, "attribution": map.attribution})),
+        "editing": options.editing.word(),
+        "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url, "attribution": map.attribution})),
         "before": older.map(|older| changes::members(older, region)),
         "scope": SCOPE,
     })

@@ -1,0 +1,153 @@
+//! The register of measurements: what it has, and changes of it. A change certifies again what sees it, as `netcert evidence` does.
+
+use serde_json::{Value, json};
+
+use super::super::answer::Stored;
+use super::super::ask::Ask;
+use super::super::options::Options;
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::answered;
+use crate::osm::{LonLat, rounded};
+use crate::reporter::Silent;
+use crate::store::Database;
+use crate::words::Named as _;
+use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, Target, Usage};
+use netcert_pipeline::{self as pipeline, EvidenceChange, EvidenceChanged, RunError, SetChanged, VerdictChanges, What};
+
+/// What stands for the name of a file in the register and in what is said.
+const FILE: &str = "page";
+
+/// `GET /api/evidence`
+pub(in super::super) fn list(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let entries = region.read(Database::register)?.entries;
+    Ok(answered(&json!({"measurements": entries.iter().map(members).collect::<Vec<_>>()})))
+}
+
+/// `GET /api/evidence/{no}`
+pub(in super::super) fn one(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let no = super::id(ask.name("no")?)?;
+    let entries = region.read(Database::register)?.entries;
+    let entry = entries.iter().find(|entry| entry.no == no);
+    let entry = entry.ok_or_else(|| Problem::not_found(format!("there is no measurement {no}")))?;
+    Ok(answered(&members(entry)))
+}
+
+/// `POST /api/evidence`: adds the measurements of the body, all of them or none. Those whose place is not found are left out.
+pub(in super::super) fn add(options: &Options, ask: &Ask, body: &[u8]) -> Result<Stored, Problem> {
+    ask.only(&["dry_run"])?;
+    let dry_run = match ask.parameter("dry_run") {
+        None | Some("false") => false,
+        Some("true") => true,
+        Some(_) => return Err(Problem::parameter("dry_run", "give true or false")),
+    };
+    let rows = evidence::read_geojson(FILE, body).map_err(|error| faulty(&error))?;
+    change(options, What::Add { file: FILE.to_owned(), rows, matched_only: true }, dry_run)
+}
+
+/// `DELETE /api/evidence/{no}`
+pub(in super::super) fn remove(options: &Options, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let no = super::id(ask.name("no")?)?;
+    change(options, What::Remove([no].into()), false)
+}
+
+fn change(options: &Options, what: What, dry_run: bool) -> Result<Stored, Problem> {
+    let ask = EvidenceChange { db: &options.db, what, dry_run, now: options.now.as_ref() };
+    let changed = pipeline::change_evidence(ask, &Silent).map_err(|error| match error {
+        RunError::Store(error) => Problem::from(error),
+        other => Problem::fault(other.to_string()),
+    })?;
+    Ok(answered(&told(&changed, dry_run)))
+}
+
+/// Every fault of the measurements of a request.
+fn faulty(error: &EvidenceError) -> Problem {
+    let faults = match error {
+        EvidenceError::Rows { faults, .. } => {
+            faults.iter().map(|fault| json!({"row": fault.row, "column": fault.column, "what": fault.what})).collect()
+        }
+        _ => Vec::new(),
+    };
+    Problem::faulty(error.to_string(), faults)
+}
+
+fn told(changed: &EvidenceChanged, dry_run: bool) -> Value {
+    let all = |entries: &[Entry]| entries.iter().map(members).collect::<Vec<_>>();
+    let doubles = changed.doubles.iter().map(|(row, no)| json!({"row": row.number, "no": no}));
+    let conflicts = changed.conflicts.iter();
+    let conflicts = conflicts.map(|conflict| json!({"measurements": conflict.entries, "what": conflict.what}));
+    json!({
+        "dry_run": dry_run,
+        "added": all(&changed.added),
+        "left_out": all(&changed.left_out),
+        "removed": all(&changed.removed),
+        "known": doubles.collect::<Vec<_>>(),
+        "conflicts": conflicts.collect::<Vec<_>>(),
+        "edges": changed.edges,
+        "junctions": changed.junctions,
+        "edges_again": changed.again[0],
+        "turns_again": changed.again[1],
+        "sets": changed.sets.iter().map(of_set).collect::<Vec<_>>(),
+    })
+}
+
+fn of_set(set: &SetChanged) -> Value {
+    let part = |changes: &VerdictChanges| {
+        json!({
+            "again": changes.again, "became_safe": changes.became_safe, "no_longer_safe": changes.no_longer_safe,
+        })
+    };
+    json!({
+        "vehicle": set.vehicle,
+        "policy": set.policy.name(),
+        "edges": part(&set.edges),
+        "turns": set.turns.as_ref().map(part),
+    })
+}
+
+/// A measurement. Ids are text, as everywhere in this interface.
+fn members(entry: &Entry) -> Value {
+    let row = &entry.row;
+    let (value, unit) = match &row.value {
+        evidence::Value::Metres(m) => (json!(m), Some("m")),
+        evidence::Value::Tonnes(t) => (json!(t), Some("t")),
+        evidence::Value::Vehicle(id) => (json!(id), None),
+        evidence::Value::Polygon(rings) => {
+            let positions = |ring: &Vec<LonLat>| ring.iter().map(|at| rounded(at.degrees().into())).collect::<Vec<_>>();
+            (json!(rings.iter().map(positions).collect::<Vec<_>>()), None)
+        }
+    };
+    let matched = entry.places.iter().map(|&(target, counts)| match target {
+        Target::Edge(id) => json!({"edge_id": id.to_string(), "counts": counts}),
+        Target::Corner { node, edges } => json!({
+            "junction": node.to_string(),
+            "from_edge": edges.map(|edges| edges[0].to_string()),
+            "to_edge": edges.map(|edges| edges[1].to_string()),
+            "counts": counts,
+        }),
+        Target::Area(node) => json!({"surface_of": node.to_string(), "counts": counts}),
+    });
+    json!({
+        "no": entry.no,
+        "file": entry.file,
+        "row": row.number,
+        "quantity": row.quantity.name(),
+        "value": value,
+        "unit": unit,
+        "sigma": row.sigma,
+        "counts": row.lower(),
+        "direction": (row.along != Along::Both).then(|| row.along.name()),
+        "source": row.source,
+        "date": row.date,
+        "licence": row.licence,
+        "name": row.name,
+        "note": row.note,
+        "state": entry.state.name(),
+        "used": entry.usage().map(Usage::name),
+        "why": entry.why,
+        "matched": matched.collect::<Vec<_>>(),
+    })
+}
