@@ -91,6 +91,17 @@ export const policyWords: Record<Policy, { name: string; meaning: string }> = {
   carriageway: { name: "Whole road", meaning: "It may use all that is paved: oncoming traffic has to wait." },
 };
 
+/** What somebody measures. */
+export const quantityWords: Record<string, string> = {
+  carriageway_width: "Width of the road",
+  direction_width: "Width of the lanes of this direction",
+  lane_width: "Width of the lane",
+  kerb_radius: "Kerb radius",
+  max_height: "Height limit",
+  max_weight: "Weight limit",
+  surface: "Paved surface",
+};
+
 export const evidenceWords: Record<Evidence | "none", string> = {
   none: "No width",
   assumed: "Assumed from class",

@@ -80,11 +80,11 @@ export function launch() {
   });
 }
 
-/** Database, server and browser together; `close` ends all three. `compared` adds an older database. */
-async function everything({ compared = false } = {}) {
+/** Database, server and browser together; `close` ends all three. `compared` adds an older database. `more` are arguments of the server. */
+async function everything({ compared = false, more = [] } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "netcert-page-"));
   const { before: older, db } = compared ? twoDatabases(folder) : { db: demoDatabase(folder) };
-  const server = await serve(db, ...(older ? ["--before", older] : []));
+  const server = await serve(db, ...(older ? ["--before", older] : []), ...more);
   const browser = await launch();
   const close = async () => {
     await browser.close();

@@ -31,8 +31,10 @@ export async function proxy(target, port, ready = () => Promise.resolve()) {
       outgoing.end(file);
       return;
     }
+    // The server must take this page for its own.
+    const own = incoming.headers.origin === `http://${incoming.headers.host}` ? { origin: `http://${host}` } : {};
     const passed = request(
-      { hostname, port: to, path: incoming.url, method: incoming.method, headers: { ...incoming.headers, host } },
+      { hostname, port: to, path: incoming.url, method: incoming.method, headers: { ...incoming.headers, ...own, host } },
       (answer) => {
         outgoing.writeHead(answer.statusCode, answer.headers);
         answer.pipe(outgoing);

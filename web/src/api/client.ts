@@ -2,6 +2,7 @@
 
 import type {
   Changes,
+  EvidenceChange,
   Explanation,
   Policy,
   Position,
@@ -35,12 +36,21 @@ function written(query: Query): string {
 
 async function get<T>(path: string, query: Query, signal?: AbortSignal): Promise<T> {
   const parameters = written(query);
-  const url = parameters ? `${path}?${parameters}` : path;
+  return send<T>(parameters ? `${path}?${parameters}` : path, signal ? { signal } : {});
+}
+
+/** Changes the register of measurements. */
+function change(method: "POST" | "DELETE", path: string, token: string | null, feature?: object): Promise<EvidenceChange> {
+  const headers = { ...(feature ? { "content-type": "application/geo+json" } : {}), ...(token ? { authorization: `Bearer ${token}` } : {}) };
+  return send<EvidenceChange>(path, { method, headers, ...(feature ? { body: JSON.stringify(feature) } : {}) });
+}
+
+async function send<T>(url: string, init: RequestInit): Promise<T> {
   let answer: Response;
   try {
-    answer = await patient(url, { headers: { accept: "application/json" }, ...(signal ? { signal } : {}) });
+    answer = await patient(url, { ...init, headers: { accept: "application/json", ...init.headers } });
   } catch (error) {
-    if (signal?.aborted) throw error;
+    if (init.signal?.aborted) throw error;
     throw new ServerProblem({ title: "The server does not answer. Is `netcert serve` still running?", status: 0 });
   }
   if (answer.ok) return (await answer.json()) as T;
@@ -92,6 +102,10 @@ export const api = {
     `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
   suppose: (id: string, metres: number, question: Question, signal?: AbortSignal) =>
     get<Supposed>(`/api/suppose/${encodeURIComponent(id)}`, { ...asked(question), metres: metres.toFixed(2) }, signal),
+  /** Keeps a measurement: a GeoJSON feature as `netcert evidence add` reads it. */
+  measure: (feature: object, token: string | null) => change("POST", "/api/evidence", token, feature),
+  /** Removes a measurement by its number. */
+  forget: (no: number, token: string | null) => change("DELETE", `/api/evidence/${no}`, token),
   /** The id of the turn from one edge into another. Null if there is none. */
   turn: async (from: string, to: string, question: Question, signal?: AbortSignal): Promise<string | null> => {
     const { turns } = await get<{ turns: Turn[] }>(`/api/edges/${encodeURIComponent(from)}`, asked(question), signal);

@@ -4,6 +4,8 @@
 
 export type Policy = "lane" | "direction" | "carriageway";
 export type VerdictName = "safe" | "unsafe" | "forbidden" | "unknown";
+/** Who may change the register of measurements over the server. */
+export type Editing = "off" | "local" | "token";
 export type Evidence = "assumed" | "from_lanes" | "estimated" | "tagged" | "surveyed";
 export type Position = [lon: number, lat: number];
 
@@ -26,6 +28,7 @@ export interface Region {
   /** Tiles of woods, water and places; `null` if the extract has none. */
   backdrop: { tiles: string; max_zoom: number } | null;
   left_hand_traffic?: boolean;
+  editing: Editing;
   base_map: { url: string; attribution: string } | null;
   /** The older database that the server was started with. */
   before: Before | null;
@@ -160,6 +163,8 @@ export interface Explanation {
   road: {
     edge_id: string;
     way_id: number;
+    from_node: number;
+    to_node: number;
     direction: string;
     highway: string;
     name: string | null;
@@ -186,6 +191,12 @@ export interface Explanation {
   kind: "edge" | "turn";
   /** The roads of a turn. */
   turn?: string;
+  /** Of a turn: the node at which it leaves its first road, and both roads. */
+  junction?: string | null;
+  from_edge?: string | null;
+  to_edge?: string | null;
+  /** The measurements that count here. */
+  measurements: Measured[];
   note?: string;
   /** Beside a reference vehicle, if one was asked for. It says nothing of `safe`. */
   relative?: { relative_to: string; relative_m: number | null; as_reference: boolean; scope: string };
@@ -223,6 +234,31 @@ export interface Supposable {
   need: number | null;
   /** Of a turn that no radius helps: the width of both roads that would do. */
   need_flare: number | null;
+}
+
+/** A measurement that counts at a road or turn. */
+export interface Measured {
+  evidence_no: number;
+  quantity: string;
+  /** Metres, or tonnes of masses; null of surfaces. */
+  value: number | null;
+  source: string;
+  date: string | null;
+}
+
+interface VerdictChanges {
+  again: number;
+  became_safe: number;
+  no_longer_safe: number;
+}
+
+/** What a change of the register did. */
+export interface EvidenceChange {
+  added: { no: number }[];
+  left_out: { why: string | null }[];
+  known: { row: number; no: number | null }[];
+  conflicts: { what: string }[];
+  sets: { vehicle: string; policy: Policy; edges: VerdictChanges; turns: VerdictChanges | null }[];
 }
 
 /** The answer to a supposition, which is no certificate. */
@@ -386,6 +422,8 @@ export interface Problem {
   status: number;
   detail?: string;
   parameter?: string;
+  /** Of measurements: every fault. */
+  faults?: { row: number; column: string; what: string }[];
   /** Of a place that is too far from a road that may be used: the place, and the nearest such road. */
   place?: { lon: number; lat: number };
   nearest?: { lon: number; lat: number; distance_m: number } | null;

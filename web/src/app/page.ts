@@ -20,6 +20,7 @@ import { History } from "./history.ts";
 import { HelpDialog } from "./help.ts";
 import { listenToKeys } from "./keys.ts";
 import { Maps } from "./maps.ts";
+import { renew, toldBefore } from "./renew.ts";
 import { Routing } from "./routing.ts";
 import { Side } from "./side.ts";
 import { Tools } from "./tools.ts";
@@ -61,6 +62,8 @@ export class Page {
       shapes: (shapes) => this.#maps.shapes(shapes),
       select: (selected) => store.set({ selected }),
       source: () => this.#source(),
+      editing: region.editing,
+      renew,
       route: (end, place, name) => this.#routing.from(end, place, name),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
       changed: (id) => {
@@ -96,6 +99,7 @@ export class Page {
       this.#drawer.show(this.#welcome.element);
       this.#maps.home();
     }
+    toldBefore();
     // For tests and for people who use the console.
     Object.assign(globalThis, { netcert: { map: this.#maps.first.map, store } });
   }

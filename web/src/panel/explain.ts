@@ -1,12 +1,13 @@
 // The explanation of a road or turn: the server's sentences and scope, and the picture of the swept path.
 
 import { api, type Question } from "../api/client.ts";
-import type { Changed, Explanation, Policy, Position, Shapes, VerdictName } from "../api/types.ts";
+import type { Changed, Editing, Explanation, Policy, Position, Shapes, VerdictName } from "../api/types.ts";
 import { h, prose, shielded } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { distance, length } from "../units.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, refs, title, verdictWords } from "../words.ts";
 import { labelled, mapKey } from "./mapkey.ts";
+import { measurements } from "./measure.ts";
 import { Picture } from "./picture.ts";
 import { headline, help, sentence } from "./plain.ts";
 import { suppose } from "./suppose.ts";
@@ -25,6 +26,10 @@ export interface Around {
   route(end: "from" | "to", place: Position, name: string): void;
   /** What a printed sheet says of the database. */
   source(): Node;
+  /** Who may change the register of measurements. */
+  editing: Editing;
+  /** Shows the page anew after a change of the database, with words about the change. */
+  renew(words: string): void;
   /** The change of a road or turn since the older database while changes are shown, and the words for it. */
   changed(id: string): { changed: Changed; note: HTMLElement } | null;
 }
@@ -125,6 +130,7 @@ export class ExplainPanel {
     }
     nodes.push(list("What else would do", help(own, question.policy)), this.#actions(own));
     if (own.suppose && own.verdict === "unsafe") nodes.push(suppose(id, question, own.suppose, (other) => this.around.select(other), this.#running!.signal));
+    nodes.push(...measurements(own, { editing: this.around.editing, vehicle: question.vehicle, renew: this.around.renew }));
     nodes.push(this.#key);
     nodes.push(details(own, id));
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))), h("div", { class: "print-only" }, this.around.source()));

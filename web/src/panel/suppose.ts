@@ -71,7 +71,7 @@ export function suppose(id: string, question: Question, own: Supposable, select:
     input,
     told,
     opens,
-    h("p", { class: "suppose-scope" }, "A supposition is no certificate. It counts when somebody has measured it: netcert evidence add."),
+    h("p", { class: "suppose-scope" }, "A supposition is no certificate. It counts when somebody has measured it."),
   );
 }
 
