@@ -50,13 +50,14 @@ impl Sign {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let key = PrivateKey::read(&self.key)?;
         let signer = Signer::new(self.name.as_deref(), &session.clock.now())?;
+        let signer = if self.replace { signer.replacing() } else { signer };
         let said = |path: &Path| {
             session.progress.say(&format!("{}: signed with key {}", path.display(), key.public().fingerprint()));
         };
         for path in &self.files {
             let text = read(path)?;
             confirmed(path, &text)?;
-            let signed = sign_document(&text, &key, &signer, self.replace);
+            let signed = sign_document(&text, &key, &signer);
             replace(path, &signed.map_err(|e| anyhow!("{}: {e}", path.display()))?)?;
             said(path);
         }

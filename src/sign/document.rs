@@ -33,15 +33,16 @@ pub enum NotSigned {
     Broken(Refusal),
 }
 
-/// The text of a certificate file with a signature. `replace`: in place of the signature that is there.
+/// The text of a certificate file with a signature. A file that is signed already is refused unless the signer is
+/// [`replacing`](Signer::replacing).
 ///
 /// # Errors
 /// See [`NotSigned`].
-pub fn sign_document(text: &str, key: &PrivateKey, signer: &Signer, replace: bool) -> Result<String, NotSigned> {
+pub fn sign_document(text: &str, key: &PrivateKey, signer: &Signer) -> Result<String, NotSigned> {
     let body = seal::body(text).map_err(NotSigned::NotSealed)?;
     let body = match check_document(text, &[]) {
         Err(Refusal::Unsigned) => body,
-        _ if replace => body.rsplit_once(MARK).map_or(body, |(before, _)| before),
+        _ if signer.replaces() => body.rsplit_once(MARK).map_or(body, |(before, _)| before),
         Ok(signed) => return Err(NotSigned::Already { fingerprint: signed.key.fingerprint() }),
         Err(refusal) => return Err(NotSigned::Broken(refusal)),
     };

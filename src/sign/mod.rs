@@ -43,7 +43,7 @@
 //! use netcert::sign::{PrivateKey, Refusal, Signer, check_document, sign_document};
 //!
 //! let key = PrivateKey::generate()?;
-//! let signed = sign_document(&file, &key, &Signer::new(None, "2026-11-21T08:00:00.000Z")?, false)?;
+//! let signed = sign_document(&file, &key, &Signer::new(None, "2026-11-21T08:00:00.000Z")?)?;
 //! assert_eq!(check_document(&signed, &[key.public()])?.key.fingerprint(), key.public().fingerprint());
 //!
 //! // Another key did not sign it, and the file without a signature has none.

@@ -19,6 +19,7 @@ const ALGORITHM: &str = "Ed25519";
 pub struct Signer {
     name: Option<String>,
     time: String,
+    replaces: bool,
 }
 
 /// A signature that holds.
@@ -96,8 +97,20 @@ impl Signer {
         };
         match name {
             Some(name) if !fits(name) => Err(SignError::Name),
-            name => Ok(Self { name: name.map(str::to_owned), time: time.to_owned() }),
+            name => Ok(Self { name: name.map(str::to_owned), time: time.to_owned(), replaces: false }),
         }
+    }
+
+    /// The same signer, who signs a certificate file in place of the signature that it has. A database keeps the signatures of other keys
+    /// in any case.
+    #[must_use]
+    pub fn replacing(self) -> Self {
+        Self { replaces: true, ..self }
+    }
+
+    /// Whether a certificate file's signature is replaced.
+    pub(super) fn replaces(&self) -> bool {
+        self.replaces
     }
 
     /// The members that say who signs with which program.

@@ -24,6 +24,7 @@ pub struct PermitPolicy {
 
 /// Why an edge or turn may not be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The verdict is not `safe`.
     Verdict(Verdict),
@@ -64,10 +65,16 @@ impl PermitPolicy {
         self.min_width_source.is_none_or(|least| source.is_some_and(|source| source >= least))
     }
 
-    /// Why a turn is refused. `permitted` says whether its edges are. `None` if the turn is permitted.
+    /// Why a turn is refused whose edges are permitted. `None` if the turn is permitted.
     #[must_use]
-    pub fn turn(&self, permit: Permit, permitted: bool) -> Option<Refusal> {
-        self.certificate(permit).or((!permitted).then_some(Refusal::Edge))
+    pub fn turn(&self, permit: Permit) -> Option<Refusal> {
+        self.certificate(permit)
+    }
+
+    /// Why a turn is refused that has a refused edge: for itself, or else for the edge.
+    #[must_use]
+    pub fn turn_of_refused_edge(&self, permit: Permit) -> Refusal {
+        self.certificate(permit).unwrap_or(Refusal::Edge)
     }
 
     fn certificate(&self, permit: Permit) -> Option<Refusal> {
@@ -189,8 +196,8 @@ mod tests {
         assert_eq!(rule.edge(safe(0.2), Some(WidthSource::Assumed)), Some(Refusal::WidthSource));
         assert_eq!(rule.edge(safe(0.2), None), Some(Refusal::WidthSource));
         assert_eq!(rule.edge(safe(0.2), Some(WidthSource::Surveyed)), None);
-        assert_eq!(rule.turn(safe(0.2), true), None);
-        assert_eq!(rule.turn(safe(0.2), false), Some(Refusal::Edge));
+        assert_eq!(rule.turn(safe(0.2)), None);
+        assert_eq!(rule.turn_of_refused_edge(safe(0.2)), Refusal::Edge);
         assert_eq!(PermitPolicy::default().edge(safe(0.0), None), None);
     }
 

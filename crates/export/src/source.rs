@@ -100,7 +100,9 @@ impl<'r> Source<'r> {
         let with_permit = |row: TurnRow| {
             let permit = Permit::of(&row.certificate);
             // The bit says whether the turn is permitted with its edges. If not, the rule finds the reason: the turn's or an edge's.
-            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn.index.index()));
+            let permitted = self.permitted.turns.get(row.turn.index.index());
+            let rule = &self.ask.rule;
+            let refusal = if permitted { rule.turn(permit) } else { Some(rule.turn_of_refused_edge(permit)) };
             ExportTurn { row, refusal }
         };
         self.reporter.begin("turns", self.permitted.turns.len() as u64);
@@ -172,7 +174,8 @@ fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Res
         let step = step?;
         let arcs = |arcs| rings.through(arcs).is_some_and(|arcs| arcs.iter().all(|&arc| known.get(arc.index())));
         let both = out.edges.get(step.from.index()) && out.edges.get(step.to.index()) && step.arcs.is_none_or(arcs);
-        let refusal = ask.rule.turn(Permit { verdict: step.verdict, rsc_m: step.rsc_m }, both);
+        let permit = Permit { verdict: step.verdict, rsc_m: step.rsc_m };
+        let refusal = if both { ask.rule.turn(permit) } else { Some(ask.rule.turn_of_refused_edge(permit)) };
         out.turns.push(refusal.is_none());
         out.turn_tally.count(refusal);
     }
