@@ -1,7 +1,6 @@
 //! `netcert certify`: makes certificates in an existing database, again or for more vehicles.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
@@ -15,6 +14,7 @@ use serde_json::json;
 
 use super::Session;
 use crate::cli::arguments::certify_options::{self, CertifyOptions};
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::fleet::{self, Fleet};
 
@@ -31,15 +31,17 @@ Examples:
   netcert certify --vehicle-file ours.toml          add all vehicles of a file
   netcert certify --corridor direction              use all lanes of the vehicle's direction
   netcert certify --db region.gpkg --max-shift 0    keep the steer axle on the centreline")]
+#[command(mut_arg(VehicleFiles::ID, |files| {
+    files.help("A file with vehicles of your own. Without --vehicle, all of its vehicles are certified")
+}))]
 pub(crate) struct Certify {
     #[command(flatten)]
     db: DatabaseArgs,
     /// Vehicles to certify.
     #[arg(long, value_name = "ID", num_args = 1..)]
     vehicle: Vec<String>,
-    /// A file with vehicles of your own. Without --vehicle, all of its vehicles are certified.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle_files: VehicleFiles,
     #[command(flatten)]
     how: CertifyOptions,
 }
@@ -47,7 +49,7 @@ pub(crate) struct Certify {
 impl Certify {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let path = self.db.path()?;
-        let fleet = Fleet::new(&self.vehicle_file)?;
+        let fleet = self.vehicle_files.fleet()?;
         let mut database = Database::open(&path)?;
         let settings = self.how.over(&database.settings_of_new_sets()?);
         let work = self.work(&mut database, &fleet, settings.policy)?;

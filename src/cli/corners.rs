@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::Session;
 use crate::cli::arguments::values::TableFormat;
-use crate::cli::database::fleet::Fleet;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::output::table::Table;
 use crate::cli::output::{results, wrapped, write_picture};
 
@@ -35,13 +35,13 @@ Examples:
   netcert corners --vehicle EU-SEMI16.5 --svg corners.svg
 
 A table takes up to a minute of processor time.")]
+#[command(mut_arg(VehicleFiles::ID, |files| files.help("A file that defines the vehicles, if the catalogue does not")))]
 pub(crate) struct Corners {
     /// The vehicles; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID", num_args = 1.., required = true)]
     vehicle: Vec<String>,
-    /// A file that defines the vehicles, if the catalogue does not.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle_files: VehicleFiles,
     /// The angles that the vehicle turns by, degrees [default: 30, 45, 60, 75, 90, 105, 120, 135].
     #[arg(long, value_name = "DEGREES", num_args = 1.., value_parser = angle)]
     angle: Vec<f64>,
@@ -61,7 +61,7 @@ fn angle(text: &str) -> Result<f64, String> {
 
 impl Corners {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fleet = Fleet::new(&self.vehicle_file)?;
+        let fleet = self.vehicle_files.fleet()?;
         let vehicles: Vec<&Vehicle> =
             self.vehicle.iter().map(|id| fleet.catalogue.get(id)).collect::<Result<_, _>>()?;
         if self.svg.is_some() && vehicles.len() > 1 {

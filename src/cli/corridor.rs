@@ -13,7 +13,7 @@ use netcert::words::Named;
 use super::Session;
 use super::explain::write_picture;
 use crate::cli::arguments::values::metres;
-use crate::cli::database::fleet::Fleet;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::output::{results, wrapped};
 
 /// The file is read into memory; 64 MiB hold a million points.
@@ -46,6 +46,7 @@ The certificate holds the vehicle, the corridor, the plan of the steer axle, the
 station before and after correction, and the tube of every axle. Its `t` is the time of a vehicle
 at 80 km/h that slows down where the sideways acceleration would exceed 2 m/s²."
 )]
+#[command(mut_arg(VehicleFiles::ID, |files| files.help("A file that defines the vehicle, if the catalogue does not")))]
 pub(crate) struct Corridor {
     /// The corridor file.
     #[arg(value_name = "CORRIDOR.json")]
@@ -53,9 +54,8 @@ pub(crate) struct Corridor {
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// A file that defines the vehicle, if the catalogue does not.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle_files: VehicleFiles,
     /// The greatest planned distance of the steer axle from the centreline, metres. The shift gives the trailers room
     /// in bends.
     #[arg(long, value_name = "METRES", value_parser = metres, default_value_t = Options::default().max_shift_m)]
@@ -70,7 +70,7 @@ pub(crate) struct Corridor {
 
 impl Corridor {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fleet = Fleet::new(&self.vehicle_file)?;
+        let fleet = self.vehicle_files.fleet()?;
         let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
         let given = read(&self.file)?;
         let options = Options { max_shift_m: self.max_shift, ..Options::default() };

@@ -11,6 +11,7 @@ use serde_json::json;
 use super::Session;
 use crate::cli::arguments::certify_options::{self, CertifyOptions};
 use crate::cli::arguments::values::country_code;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::database::fleet::Fleet;
 use crate::cli::output::{grouped, human};
 
@@ -58,13 +59,15 @@ pub(crate) struct Ingest {
 
 #[derive(Args)]
 #[command(next_help_heading = "Which vehicles")]
+#[command(mut_arg(VehicleFiles::ID, |files| {
+    files.help("A file with vehicles of your own. Without --vehicle, all of its vehicles are certified, too")
+}))]
 struct Which {
     /// Certify only the vehicles with these ids; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID", num_args = 1.., conflicts_with_all = ["all_vehicles", "no_certify"])]
     vehicle: Vec<String>,
-    /// A file with vehicles of your own. Without --vehicle, all of its vehicles are certified, too.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle_files: VehicleFiles,
     /// Certify all vehicles of the catalogue.
     #[arg(long, conflicts_with = "no_certify")]
     all_vehicles: bool,
@@ -94,7 +97,7 @@ impl Ingest {
             Some(db) => db.clone(),
             None => default_db(&self.inputs)?,
         };
-        let fleet = Fleet::new(&self.which.vehicle_file)?;
+        let fleet = self.which.vehicle_files.fleet()?;
         let selection = self.which.selection(&fleet);
         let countries = self.roads.countries()?;
         let settings = self.how.settings();

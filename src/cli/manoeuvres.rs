@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::Session;
 use crate::cli::arguments::values::TableFormat;
-use crate::cli::database::fleet::Fleet;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::output::table::Table;
 use crate::cli::output::{results, write_picture};
 
@@ -30,13 +30,13 @@ Examples:
   netcert manoeuvres --vehicle EU-SEMI16.5 --svg turns.svg
 
 A pass is no approval: official assessments use the real bodies, tyres and axle groups.")]
+#[command(mut_arg(VehicleFiles::ID, |files| files.help("A file that defines the vehicles, if the catalogue does not")))]
 pub(crate) struct Manoeuvres {
     /// The vehicles; `netcert vehicles list` shows the ids [default: all].
     #[arg(long, value_name = "ID", num_args = 1..)]
     vehicle: Vec<String>,
-    /// A file that defines the vehicles, if the catalogue does not.
-    #[arg(long, value_name = "F.toml")]
-    vehicle_file: Vec<PathBuf>,
+    #[command(flatten)]
+    vehicle_files: VehicleFiles,
     /// The output format.
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     format: TableFormat,
@@ -47,7 +47,7 @@ pub(crate) struct Manoeuvres {
 
 impl Manoeuvres {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fleet = Fleet::new(&self.vehicle_file)?;
+        let fleet = self.vehicle_files.fleet()?;
         let vehicles: Vec<&Vehicle> = match self.vehicle.as_slice() {
             [] => fleet.catalogue.iter().collect(),
             ids => ids.iter().map(|id| fleet.catalogue.get(id)).collect::<Result<_, _>>()?,

@@ -10,7 +10,7 @@ use netcert::vehicle::{Catalogue, Vehicle, VehicleDefinition};
 use serde::Serialize;
 
 use super::Session;
-use crate::cli::database::fleet::Fleet;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::output::table::Table;
 use crate::cli::output::{results, write_picture};
 
@@ -41,12 +41,12 @@ enum What {
         region: Option<String>,
     },
     /// Show the definition of one vehicle as a vehicle file, with all defaults filled in.
+    #[command(mut_arg(VehicleFiles::ID, |files| files.help("A vehicle file in which to look for the id, too")))]
     Show {
         /// The vehicle's id.
         id: String,
-        /// A vehicle file in which to look for the id, too.
-        #[arg(long, value_name = "F.toml")]
-        vehicle_file: Vec<PathBuf>,
+        #[command(flatten)]
+        vehicle_files: VehicleFiles,
         /// The output format: TOML as in a vehicle file, or JSON as in a certificate.
         #[arg(long, value_enum, default_value_t = Form::Toml)]
         format: Form,
@@ -80,8 +80,8 @@ impl Vehicles {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         match &self.what {
             What::List { region } => list(region.as_deref()),
-            What::Show { id, vehicle_file, format, svg } => {
-                let fleet = Fleet::new(vehicle_file)?;
+            What::Show { id, vehicle_files, format, svg } => {
+                let fleet = vehicle_files.fleet()?;
                 let vehicle = fleet.catalogue.get(id)?;
                 if let Some(path) = svg {
                     write_picture(path, &picture::vehicle(vehicle))?;

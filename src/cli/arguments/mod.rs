@@ -6,3 +6,4 @@ pub(crate) mod position;
 pub(crate) mod relative;
 pub(crate) mod values;
 pub(crate) mod vehicle_args;
+pub(crate) mod vehicle_files;

@@ -1,21 +1,19 @@
 //! What verbs share that ask about one vehicle in a database: the vehicle, the width that it may use, and the time.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use jiff::civil::DateTime;
 use netcert::osm::facts::Policy;
 
 use crate::cli::arguments::values::{local_time, word};
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 
 #[derive(Args)]
 pub(crate) struct VehicleArgs {
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long = "vehicle", value_name = "ID")]
     pub(crate) id: String,
-    /// A file that defines the vehicle, if neither the catalogue nor the database does.
-    #[arg(long = "vehicle-file", value_name = "F.toml")]
-    pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: VehicleFiles,
 }
 
 // A struct of its own, because verbs have other options between this one and those of the vehicle.

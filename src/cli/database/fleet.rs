@@ -1,12 +1,11 @@
 //! Finds the vehicle of an id in the catalogue, in the files of `--vehicle-file`, or in a database.
 
-use std::path::PathBuf;
-
 use anyhow::Context as _;
 use netcert::store::Database;
 use netcert::vehicle::{Catalogue, Vehicle};
 
 use crate::cli::arguments::vehicle_args::VehicleArgs;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 
 /// The built-in catalogue extended by the user's files, and the ids of the user's vehicles.
 pub(crate) struct Fleet {
@@ -14,10 +13,11 @@ pub(crate) struct Fleet {
     pub(crate) own: Vec<String>,
 }
 
-impl Fleet {
-    pub(crate) fn new(files: &[PathBuf]) -> anyhow::Result<Self> {
-        let mut fleet = Self { catalogue: Catalogue::builtin()?, own: Vec::new() };
-        for file in files {
+impl VehicleFiles {
+    /// The catalogue with the vehicles of these files.
+    pub(crate) fn fleet(&self) -> anyhow::Result<Fleet> {
+        let mut fleet = Fleet { catalogue: Catalogue::builtin()?, own: Vec::new() };
+        for file in &self.paths {
             let more = Catalogue::from_path(file)?;
             fleet.own.extend(more.iter().map(|vehicle| vehicle.id.clone()));
             fleet.catalogue = fleet.catalogue.extended(more, &file.display().to_string())?;
@@ -36,8 +36,8 @@ pub(crate) fn kept(database: &mut Database, id: &str) -> anyhow::Result<Option<V
 
 /// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose certificates were made with its own
 /// definition, then the catalogue.
-pub(crate) fn definition(database: &mut Database, id: &str, files: &[PathBuf]) -> anyhow::Result<Vehicle> {
-    let fleet = Fleet::new(files)?;
+pub(crate) fn definition(database: &mut Database, id: &str, files: &VehicleFiles) -> anyhow::Result<Vehicle> {
+    let fleet = files.fleet()?;
     match kept(database, id)? {
         Some(vehicle) if !fleet.own.iter().any(|own| own == id) => Ok(vehicle),
         _ => Ok(fleet.catalogue.get(id)?.clone()),
@@ -52,6 +52,6 @@ impl VehicleArgs {
 
     /// Whether one of the user's files defines the vehicle.
     pub(crate) fn is_own(&self) -> anyhow::Result<bool> {
-        Ok(Fleet::new(&self.files)?.own.contains(&self.id))
+        Ok(self.files.fleet()?.own.contains(&self.id))
     }
 }

@@ -1,6 +1,6 @@
 //! Certifies a vehicle on demand: if the database lacks its certificates, they are made and stored.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::anyhow;
 use netcert::osm::facts::Policy;
@@ -13,6 +13,7 @@ use serde_json::json;
 use crate::cli::Session;
 use crate::cli::arguments::certify_options;
 use crate::cli::arguments::vehicle_args::VehicleArgs;
+use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::database::fleet;
 
 /// What a set has certificates of.
@@ -28,7 +29,7 @@ pub(crate) struct RequiredSet<'a> {
     /// The vehicle's id.
     pub(crate) vehicle: &'a str,
     /// The files of `--vehicle-file`.
-    pub(crate) files: &'a [PathBuf],
+    pub(crate) files: &'a VehicleFiles,
     /// The policy of the certificates. `None` means the policy of the database's ingest.
     pub(crate) policy: Option<Policy>,
     /// What it has to have certificates of.
