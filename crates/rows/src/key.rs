@@ -52,7 +52,7 @@ impl<'n> RoadName<Cow<'n, str>> {
     #[must_use]
     pub fn of(network: &'n Network, road: &Road) -> Self {
         let text = |id: StringId| Cow::Borrowed(network.strings.text(id));
-        let highway = if road.link { highway(road.class, true).into() } else { road.class.name().into() };
+        let highway = if road.link { highway(road.class, road.link).into() } else { road.class.name().into() };
         Self { highway, name: road.name.map(text), reference: road.reference.map(text) }
     }
 

@@ -76,19 +76,19 @@ impl Changes {
     fn between(before: &Certified<'_>, after: &Certified<'_>, stop: &Stop) -> Result<Self, Problem> {
         let (old, new) = (before.region, after.region);
         let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
-        let turned = before.settings.turns && after.settings.turns;
         let mut gathered = Gathered {
             set: SetKey { vehicle, policy },
             sides: [old.sides()?, new.sides()?],
             sums: Sums::default(),
             longest: Longest::default(),
+            turns_compared: before.settings.turns && after.settings.turns,
         };
         // Both files are read at the same time, row beside row.
         new.read_until(stop, |new| {
             Ok(old.read_until(stop, |old| {
                 let options = QueryOptions::new(vehicle, policy);
                 diff::edges(old.query(&options)?, new.query(&options)?, |changed| gathered.edge(&changed))?;
-                if turned {
+                if gathered.turns_compared {
                     let (before, after) = (old.turn_rows(vehicle, policy)?, new.turn_rows(vehicle, policy)?);
                     diff::turns(before, after, |changed| gathered.turn(&changed))?;
                 }
@@ -97,7 +97,7 @@ impl Changes {
         })??;
         let definitions = [before, after].map(|one| one.set.vehicle_blake3.as_str());
         let notes = diff::notes(definitions, [&before.settings, &after.settings]);
-        Ok(gathered.finish(notes, turned))
+        Ok(gathered.finish(notes))
     }
 }
 
@@ -108,6 +108,8 @@ struct Gathered<'g> {
     sides: [Arc<DrivingSides>; 2],
     sums: Sums,
     longest: Longest,
+    /// Whether both sets have certificates of turns.
+    turns_compared: bool,
 }
 
 /// The longest changes so far.
@@ -168,7 +170,7 @@ impl Gathered<'_> {
         self.longest.add(Kept { bounds, length_m, id, feature });
     }
 
-    fn finish(mut self, notes: Vec<&'static str>, turns_compared: bool) -> Changes {
+    fn finish(mut self, notes: Vec<&'static str>) -> Changes {
         self.longest.shorten();
         let Longest { kept, all } = self.longest;
         let sum = |(name, sum): (&&str, &diff::Sum)| json!({"change": name, "edges": sum.edges, "km": km(sum.length_m), "turns": sum.turns});
@@ -178,7 +180,7 @@ impl Gathered<'_> {
             sums: self.sums.by_name().iter().map(sum).collect(),
             roads: roads.into_iter().take(MOST_ROADS).map(road).collect(),
             notes,
-            turns_compared,
+            turns_compared: self.turns_compared,
             complete: all == kept.len(),
             kept,
         }

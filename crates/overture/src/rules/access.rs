@@ -77,20 +77,30 @@ impl Effect {
         let (rank, strange_mode) = rank(when, whom);
         let strange = strange_mode || when.is_some_and(When::is_strange);
         match rule.access_type.as_deref() {
-            Some("allowed" | "designated") => (Self::allow(when, rank, strange), None),
-            kind => {
-                let rank = rank.or(strange_mode.then_some(Rank::Lorry));
-                // An unknown kind of rule may close the road.
-                Self::deny(when, rank, strange || kind != Some("denied"))
+            Some("allowed" | "designated") => {
+                let effect = match rank {
+                    None => Self::None("other_vehicles"),
+                    Some(_) if strange => Self::None("not_understood"),
+                    Some(rank) => Self::allow(when, rank),
+                };
+                (effect, None)
             }
+            kind => match rank.or(strange_mode.then_some(Rank::Lorry)) {
+                None => (Self::None("other_vehicles"), None),
+                Some(rank) if !strange && kind == Some("denied") => Self::deny(when, rank),
+                // What is not understood may close the road, and so may an unknown kind of rule.
+                Some(rank) => {
+                    let headings = headings(when);
+                    (Self::Deny { rank, headings, to: Permission::No, direction: false }, Some("not_understood"))
+                }
+            },
         }
     }
 
-    fn allow(when: Option<&When>, rank: Option<Rank>, strange: bool) -> Self {
-        let Some(rank) = rank else { return Self::None("other_vehicles") };
+    /// What a rule opens of which everything is understood but perhaps its heading.
+    fn allow(when: Option<&When>, rank: Rank) -> Self {
         let Some(when) = when else { return Self::Allow { rank, headings: [true; 2], to: Permission::Yes } };
-        let known_heading = matches!(when.heading.as_deref(), None | Some("forward" | "backward"));
-        if strange || !known_heading {
+        if !matches!(when.heading.as_deref(), None | Some("forward" | "backward")) {
             return Self::None("not_understood");
         }
         // When and for which sizes it opens is not decided, so it opens nothing.
@@ -110,18 +120,14 @@ impl Effect {
         Self::Allow { rank, headings: headings(Some(when)), to }
     }
 
-    fn deny(when: Option<&When>, rank: Option<Rank>, strange: bool) -> (Self, Option<&'static str>) {
-        let Some(rank) = rank else { return (Self::None("other_vehicles"), None) };
+    /// What a rule closes of which everything is understood, and a remark on it.
+    fn deny(when: Option<&When>, rank: Rank) -> (Self, Option<&'static str>) {
         let Some(when) = when else {
-            let note = strange.then_some("not_understood");
-            return (Self::Deny { rank, headings: [true; 2], to: Permission::No, direction: false }, note);
+            return (Self::Deny { rank, headings: [true; 2], to: Permission::No, direction: false }, None);
         };
         let headings = headings(Some(when));
         let sizes = when.vehicle.as_deref().unwrap_or_default();
         let times = when.during.is_some() || when.using.is_some() || when.recognized.is_some();
-        if strange {
-            return (Self::Deny { rank, headings, to: Permission::No, direction: false }, Some("not_understood"));
-        }
         if !sizes.is_empty() {
             // All comparisons hold together, so each of them bars at least what the rule bars. Sizes that are always known come first.
             let usable = sizes.iter().filter_map(measures::limit).min_by_key(|(kind, _)| order(*kind));

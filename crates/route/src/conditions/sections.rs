@@ -43,7 +43,8 @@ pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, 
         let range = before.unwrap_or(0)..after.map_or(drive.edges.len(), |at| at + 1);
         let driven: Vec<DrivenEdge> = range.map(|at| DrivenEdge::of(network, way, at)).collect();
         let whole_m = driven.iter().map(DrivenEdge::length_m).sum();
-        for cut_m in cuts_m(whole_m, long_m, before.is_some(), after.is_some()) {
+        let ends = [before, after].map(|turn| if turn.is_some() { LegEnd::Turn } else { LegEnd::Open });
+        for cut_m in cuts_m(whole_m, long_m, ends) {
             let Some((at, share)) = edge_at(&driven, cut_m) else { continue };
             sections.push(section(drive, first..at + 1, start, share));
             (first, start) = (at, share);
@@ -53,13 +54,23 @@ pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, 
     sections
 }
 
-/// Where a leg is parted, in metres from its beginning. `before` and `after` say whether a turn is there.
-fn cuts_m(whole_m: f64, long_m: f64, before: bool, after: bool) -> Vec<f64> {
-    match (before, after) {
-        (true, true) if whole_m >= 3.0 * long_m => vec![long_m, whole_m - long_m],
-        (true, true) if whole_m >= long_m => vec![0.5 * whole_m],
-        (true, false) if whole_m >= 2.0 * long_m => vec![long_m],
-        (false, true) if whole_m >= 2.0 * long_m => vec![whole_m - long_m],
+/// What a leg begins or ends with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LegEnd {
+    /// A turn.
+    Turn,
+    /// The end of the way.
+    Open,
+}
+
+/// Where a leg is parted, in metres from its beginning. `ends`: its beginning and its end.
+fn cuts_m(whole_m: f64, long_m: f64, ends: [LegEnd; 2]) -> Vec<f64> {
+    use LegEnd::{Open, Turn};
+    match ends {
+        [Turn, Turn] if whole_m >= 3.0 * long_m => vec![long_m, whole_m - long_m],
+        [Turn, Turn] if whole_m >= long_m => vec![0.5 * whole_m],
+        [Turn, Open] if whole_m >= 2.0 * long_m => vec![long_m],
+        [Open, Turn] if whole_m >= 2.0 * long_m => vec![whole_m - long_m],
         _ => Vec::new(),
     }
 }
@@ -112,15 +123,16 @@ mod tests {
 
     #[test]
     fn a_turn_keeps_enough_road_and_no_more() {
+        use LegEnd::{Open, Turn};
         // Short legs are not parted, and those of middle length once.
-        assert_eq!(cuts_m(99.0, 100.0, true, true), [0.0; 0]);
-        assert_eq!(cuts_m(240.0, 100.0, true, true), [120.0]);
-        assert_eq!(cuts_m(9000.0, 100.0, true, true), [100.0, 8900.0]);
+        assert_eq!(cuts_m(99.0, 100.0, [Turn, Turn]), [0.0; 0]);
+        assert_eq!(cuts_m(240.0, 100.0, [Turn, Turn]), [120.0]);
+        assert_eq!(cuts_m(9000.0, 100.0, [Turn, Turn]), [100.0, 8900.0]);
         // Before the first turn and after the last one.
-        assert_eq!(cuts_m(9000.0, 100.0, false, true), [8900.0]);
-        assert_eq!(cuts_m(9000.0, 100.0, true, false), [100.0]);
-        assert_eq!(cuts_m(150.0, 100.0, true, false), [0.0; 0]);
-        assert_eq!(cuts_m(9000.0, 100.0, false, false), [0.0; 0]);
+        assert_eq!(cuts_m(9000.0, 100.0, [Open, Turn]), [8900.0]);
+        assert_eq!(cuts_m(9000.0, 100.0, [Turn, Open]), [100.0]);
+        assert_eq!(cuts_m(150.0, 100.0, [Turn, Open]), [0.0; 0]);
+        assert_eq!(cuts_m(9000.0, 100.0, [Open, Open]), [0.0; 0]);
     }
 
     #[test]

@@ -178,7 +178,10 @@ impl Rule {
                 0 => About::Oneway(String::new()),
                 _ => About::Oneway(scope.remove(0)),
             },
-            Some(About::Limit(property)) => limit_about(property, &scope, strange, &value)?,
+            // A limit by a key with parts that nobody knows counts if its value is a number; else the tag is a remark, such as
+            // `maxweight:signed=no`.
+            Some(About::Limit(property)) if strange && !states_limit(property, &value) => return None,
+            Some(About::Limit(property)) => limit_about(property, &scope, &value)?,
             // `seasonal=no`
             Some(About::Impassable | About::Seasonal) if strange || matches!(value.as_str(), "no" | "false" | "0") => {
                 return None;
@@ -220,13 +223,17 @@ impl Rule {
     }
 }
 
-/// A limit by a key with parts that nobody knows counts if its value is a number; else the tag is a remark, such as
-/// `maxweight:signed=no`.
-fn limit_about(property: Property, scope: &[String], strange: bool, value: &str) -> Option<About> {
+/// Whether a value says what the limit is, at all times or at some.
+fn states_limit(property: Property, value: &str) -> bool {
+    matches!(property.read(value), Limit::At(_)) || value.contains('@')
+}
+
+/// What a tag of a limit is about. `None` if it only says that there is none.
+fn limit_about(property: Property, scope: &[String], value: &str) -> Option<About> {
     let remark = matches!(value, "yes" | "no");
-    if (strange || remark) && !matches!(property.read(value), Limit::At(_)) && !value.contains('@') {
+    if remark && !states_limit(property, value) {
         // `maxweight=yes` says that there is a limit.
-        return (!strange && value == "yes").then_some(About::Limit(property));
+        return (value == "yes").then_some(About::Limit(property));
     }
     let of_trailers = scope.iter().any(|key| key == "trailer" || key == "semitrailer");
     Some(About::Limit(if of_trailers { property.of_trailers() } else { property }))
