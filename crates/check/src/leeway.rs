@@ -138,23 +138,16 @@ impl SweptVehicle<'_> {
         let spread = last > first || all.iter().any(|corner| corner.s < ends[0] || corner.s > ends[1]);
         let halve = halving_helps || spread || dull || cell.halvings < LEAST_HALVINGS;
         if cell.halvings < MOST_HALVINGS && halve {
-            return Fate::Halved(self.halves(cell, dull || body > time));
+            let along = dull || body > time || self.is_long(cell);
+            return Fate::Halved(if along { halves_along(cell) } else { halves_in_time(cell) });
         }
         Fate::Short(-slack, first..=last)
     }
 
-    /// Halves a cell along its body if asked to or if it is long, else in time.
-    fn halves(&self, cell: &Cell, along: bool) -> [Cell; 2] {
-        let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
+    /// Whether a cell is long for the time that it takes.
+    fn is_long(&self, cell: &Cell) -> bool {
         let [[a0, a1], [t0, t1]] = [cell.a, cell.t];
-        if along || (a1 - a0).abs() > LONG * self.tubes.step_m * (t1 - t0) {
-            let middle = f64::midpoint(a0, a1);
-            (halves[0].a[1], halves[1].a[0]) = (middle, middle);
-        } else {
-            let middle = f64::midpoint(t0, t1);
-            (halves[0].t[1], halves[1].t[0]) = (middle, middle);
-        }
-        halves
+        (a1 - a0).abs() > LONG * self.tubes.step_m * (t1 - t0)
     }
 
     /// Stretches of the corridor whose normals may pass through a cell: it lies ahead of the stretch's first station
@@ -184,6 +177,22 @@ impl SweptVehicle<'_> {
         let slide = slide.fold(0.0, f64::max);
         Knots::new(link, KNOT_M).about([cell.a[0] - slide, cell.a[1] + slide])
     }
+}
+
+/// The halves of a cell along its body.
+fn halves_along(cell: &Cell) -> [Cell; 2] {
+    let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
+    let middle = f64::midpoint(cell.a[0], cell.a[1]);
+    (halves[0].a[1], halves[1].a[0]) = (middle, middle);
+    halves
+}
+
+/// The halves of a cell in time.
+fn halves_in_time(cell: &Cell) -> [Cell; 2] {
+    let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
+    let middle = f64::midpoint(cell.t[0], cell.t[1]);
+    (halves[0].t[1], halves[1].t[0]) = (middle, middle);
+    halves
 }
 
 /// Where the feet of a half's ends are searched from: known feet, or the place between them.

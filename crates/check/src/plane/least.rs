@@ -1,6 +1,5 @@
 //! The search for the place of a piece that has the least room. Pieces are halved until each one is decided.
 
-use super::WORSE_M;
 use super::piece::BodyPiece;
 use super::taken::{ROUNDING_M, Taken};
 use crate::TOLERANCE_M;
@@ -10,6 +9,8 @@ use crate::swept::SweptVehicle;
 use crate::vector::{Point, length};
 use netcert_base::watch;
 
+/// Once a claim has failed, only places that are worse by this are looked for, metres.
+pub(super) const WORSE_M: f64 = 0.01;
 /// Cells that extend and move less than this are not halved, metres.
 const FINEST_M: f64 = 1e-4;
 /// For cells that extend and move less than this the adjoint may run, even if their middle does by the filter, metres.
@@ -45,6 +46,14 @@ enum Fate {
     Halved([Node; 2]),
 }
 
+/// What is known of a claim while its pieces are searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Claim {
+    /// No place refutes it so far.
+    Open,
+    Refuted,
+}
+
 /// The state of a search.
 struct Search<'a> {
     /// Boundaries of the areas that count.
@@ -53,8 +62,7 @@ struct Search<'a> {
     target: f64,
     /// Whether a place outside all areas fails. A claim below zero concedes that a place is so far outside.
     strict: bool,
-    /// Whether the claim has failed.
-    refuted: bool,
+    claim: Claim,
     /// Comparisons so far.
     work: usize,
     /// The place whose bound is least so far.
@@ -80,7 +88,7 @@ impl Search<'_> {
     /// From now on only places that are worse than this one are looked for.
     fn fail_at(&mut self, at: Point, bound: f64) {
         self.least = Some((at, bound));
-        (self.target, self.strict, self.refuted) = (bound - WORSE_M, false, true);
+        (self.target, self.strict, self.claim) = (bound - WORSE_M, false, Claim::Refuted);
     }
 
     /// The segments of each area that are closer than `reach` to a piece, with the ways to them.
@@ -104,18 +112,18 @@ struct Seen {
 }
 
 impl SweptVehicle<'_> {
-    /// The place of a piece whose bound is least, with the bound, if that is below `target`. Once a claim is `refuted`, the
+    /// The place of a piece whose bound is least, with the bound, if that is below `target`. Once a claim is refuted, the
     /// adjoint is spared: the search ends at a place whose bound it may still improve.
     pub(super) fn least(
         &mut self,
         piece: BodyPiece,
         target: f64,
         active: &[usize],
-        refuted: bool,
+        claim: Claim,
     ) -> Option<(Point, f64)> {
         let spans = &self.road.areas.spans;
         let boundaries = active.iter().map(|&k| &spans[k].boundary).collect();
-        let mut search = Search { boundaries, target, strict: target >= -TOLERANCE_M, refuted, work: 0, least: None };
+        let mut search = Search { boundaries, target, strict: target >= -TOLERANCE_M, claim, work: 0, least: None };
         let mut open = vec![self.first_node(piece, &search)];
         while let Some(node) = open.pop() {
             watch::poll();
@@ -202,7 +210,7 @@ impl SweptVehicle<'_> {
         let duller = |a: [f64; 2]| self.dull(piece.step, piece.unit, a);
         // A small piece whose middle does by a hair may fail all the same.
         let dull = (failed || size <= SMALL_M) && search.goes_on() && (duller(piece.a) || duller(levers));
-        if dull && search.refuted {
+        if dull && search.claim == Claim::Refuted {
             return Fate::Spared;
         }
         let [long, spread] = [piece.a, levers].map(|a| (a[1] - a[0]).abs());
@@ -217,7 +225,9 @@ impl SweptVehicle<'_> {
         }
         // A direction that is tried has a lever of its own. It proves nothing while only the filter bounds that place.
         let aslant = there
-            .filter(|(bound, _)| failed && *bound >= target - ASLANT_M && !search.refuted && search.goes_on())
+            .filter(|(bound, _)| {
+                failed && *bound >= target - ASLANT_M && search.claim == Claim::Open && search.goes_on()
+            })
             .map(|(_, way)| self.levers_aslant(&piece, way))
             .filter(|levers| duller(*levers));
         if let Some(levers) = aslant {

@@ -56,12 +56,10 @@ mod taken;
 
 use std::ops::Range;
 
+use self::least::{Claim, WORSE_M};
 use self::piece::BodyPiece;
 use crate::swept::SweptVehicle;
 use crate::vector::Point;
-
-/// Once a claim has failed, only places that are worse by this are looked for, metres.
-const WORSE_M: f64 = 0.01;
 
 /// The place where a claim fails by most in an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,10 +109,16 @@ impl SweptVehicle<'_> {
                 if self.tubes.get(step, unit).is_none() {
                     return Some(Cramped { step, unit, at: [0.0; 2], short_m: f64::INFINITY });
                 }
-                for piece in self.pieces(step, unit, whole, only.map(|(_, side)| side)) {
+                let pieces = match only {
+                    None if whole => self.whole_body(step, unit),
+                    None => self.outline(step, unit, &[0, 1]),
+                    Some((_, side)) => self.outline(step, unit, &[side]),
+                };
+                for piece in pieces {
                     // Only what is worse than the worst so far is of interest.
                     let target = claimed - worst.map_or(0.0, |worst| worst.short_m + WORSE_M);
-                    if let Some((at, bound)) = self.least(piece, target, &active, worst.is_some()) {
+                    let claim = if worst.is_some() { Claim::Refuted } else { Claim::Open };
+                    if let Some((at, bound)) = self.least(piece, target, &active, claim) {
                         worst = Some(Cramped { step, unit, at, short_m: claimed - bound });
                     }
                 }
@@ -126,25 +130,29 @@ impl SweptVehicle<'_> {
         worst
     }
 
-    /// A body's outline in a step, or all of the body.
-    fn pieces(&self, step: usize, unit: usize, whole: bool, side: Option<usize>) -> Vec<BodyPiece> {
+    /// All of a body in a step.
+    fn whole_body(&self, step: usize, unit: usize) -> Vec<BodyPiece> {
         let link = &self.chain.links[unit];
         let (sides, b) = ([link.rear, link.front], link.half_width);
         let piece = |a: [f64; 2], c: [f64; 2]| BodyPiece { unit, step, a, c, t: [0.0, 1.0] };
-        if whole && side.is_none() {
-            // The outline is a part of it, but it is sooner decided by itself.
-            return [
-                piece(sides, [b; 2]),
-                piece(sides, [-b; 2]),
-                piece([link.front; 2], [-b, b]),
-                piece([link.rear; 2], [-b, b]),
-                piece(sides, [-b, b]),
-            ]
-            .to_vec();
-        }
-        let ends = sides.map(|a| piece([a; 2], [-b, b]));
-        let own = [b, -b].into_iter().enumerate().filter(|(own, _)| side.is_none_or(|side| side == *own));
-        ends.into_iter().chain(own.map(|(_, c)| piece(sides, [c; 2]))).collect()
+        // The outline is a part of it, but it is sooner decided by itself.
+        vec![
+            piece(sides, [b; 2]),
+            piece(sides, [-b; 2]),
+            piece([link.front; 2], [-b, b]),
+            piece([link.rear; 2], [-b, b]),
+            piece(sides, [-b, b]),
+        ]
+    }
+
+    /// A body's rear, front and these of its sides in a step (0 left, 1 right).
+    fn outline(&self, step: usize, unit: usize, sides: &[usize]) -> Vec<BodyPiece> {
+        let link = &self.chain.links[unit];
+        let (ends, b) = ([link.rear, link.front], link.half_width);
+        let piece = |a: [f64; 2], c: [f64; 2]| BodyPiece { unit, step, a, c, t: [0.0, 1.0] };
+        let own = [b, -b].into_iter().enumerate().filter(|(side, _)| sides.contains(side));
+        let own = own.map(|(_, c)| piece(ends, [c; 2]));
+        ends.map(|a| piece([a; 2], [-b, b])).into_iter().chain(own).collect()
     }
 }
 

@@ -130,16 +130,15 @@ pub(super) struct Minima {
 }
 
 impl Minima {
-    /// Nothing is noted yet. `areas` says whether the track has any.
-    pub(super) fn new(stations: usize, areas: bool) -> Self {
-        let steps = if areas { stations } else { 0 };
+    /// Nothing is noted yet, on a track without areas.
+    pub(super) fn new(stations: usize) -> Self {
         Self {
             left: vec![UNVISITED_M; stations],
             right: vec![UNVISITED_M; stations],
             mark_left: vec![UNVISITED_M; stations],
             mark_right: vec![UNVISITED_M; stations],
-            area: [vec![UNVISITED_M; steps], vec![UNVISITED_M; steps]],
-            area_foot: [vec![0; steps], vec![0; steps]],
+            area: [Vec::new(), Vec::new()],
+            area_foot: [Vec::new(), Vec::new()],
             floor: f64::INFINITY,
             counted: 0..0,
             keep: f64::NEG_INFINITY,
@@ -151,12 +150,20 @@ impl Minima {
         }
     }
 
+    /// Nothing is noted yet, on a track with areas.
+    pub(super) fn with_areas(stations: usize) -> Self {
+        Self {
+            area: [vec![UNVISITED_M; stations], vec![UNVISITED_M; stations]],
+            area_foot: [vec![0; stations], vec![0; stations]],
+            ..Self::new(stations)
+        }
+    }
+
     /// Minima of a cancelled sweep: nothing fits anywhere, so a caller that does not check for cancellation gets no
     /// false `safe`.
-    pub(super) fn lost(stations: usize, areas: bool) -> Self {
-        let mut lost = Self::new(stations, areas);
-        (0..stations).for_each(|k| lost.lose(k));
-        lost
+    pub(super) fn lost(mut self) -> Self {
+        (0..self.left.len()).for_each(|k| self.lose(k));
+        self
     }
 
     pub(super) fn lose(&mut self, k: usize) {

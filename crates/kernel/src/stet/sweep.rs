@@ -19,6 +19,7 @@ use super::model::MAX_UNITS;
 use super::ride::{Refining, Ride};
 use super::spans;
 use super::steer::SteerPaths;
+use super::track::Track;
 use netcert_base::counted::{WorkKind, count};
 use netcert_base::stop::Stop;
 use netcert_base::watch;
@@ -108,7 +109,7 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
     while lanes.iter().any(|lane| !lane.done) {
         watch::poll();
         if stop.told() {
-            return rides.iter().map(|ride| Minima::lost(ride.track.len(), !ride.track.areas.is_empty())).collect();
+            return rides.iter().map(|ride| unvisited(ride.track).lost()).collect();
         }
         paths.next_block(rides);
         drive::<V, CERTIFY, REFINE>(&mut motion, &group, &paths, rows, &mut trail);
@@ -130,7 +131,12 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
             if REFINE {
                 adjoint::close(&mut trail, index, lane.bodies.len());
             }
-            lane.look::<V, CERTIFY>(index, asked, tight_from, rows, tight);
+            if asked {
+                lane.look::<V, CERTIFY>(index, tight_from, rows, tight);
+            } else {
+                lane.pass_over();
+            }
+            lane.go_on();
         }
         if hopeless.is_some() && lanes[0].open_ended() {
             for lane in &mut lanes {
@@ -141,10 +147,15 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
     lanes.into_iter().map(Lane::finish).collect()
 }
 
+/// The minima of a ride along a track before it begins.
+fn unvisited(track: &Track) -> Minima {
+    if track.areas.is_empty() { Minima::new(track.len()) } else { Minima::with_areas(track.len()) }
+}
+
 impl<'r> Lane<'r> {
     fn new<const CERTIFY: bool>(ride: &'r Ride<'r>) -> Self {
         let Ride { track, model, shrink, scope, .. } = *ride;
-        let mut minima = Minima::new(track.len(), !track.areas.is_empty());
+        let mut minima = unvisited(track);
         if let Some(span) = scope.only {
             (minima.counted, minima.keep) = (spans::straight(track, model, span), scope.keep);
         }
@@ -156,28 +167,29 @@ impl<'r> Lane<'r> {
         Self { ride, bodies, minima, head, end, done: head >= end }
     }
 
-    /// Looks at the points over the block that was driven last, if it is `asked` for.
-    fn look<V: Vector, const CERTIFY: bool>(
-        &mut self,
-        index: usize,
-        asked: bool,
-        tight_from: usize,
-        rows: &[f64],
-        tight: &Refined,
-    ) {
-        let Self { ride: Ride { track, model, shift, scope, .. }, bodies, minima, head, .. } = self;
+    /// Looks at the points over the block that was driven last.
+    fn look<V: Vector, const CERTIFY: bool>(&mut self, index: usize, tight_from: usize, rows: &[f64], tight: &Refined) {
+        let Self { ride: Ride { track, shift, .. }, bodies, minima, head, .. } = self;
         let (track, shift, head) = (*track, *shift, *head);
         for (unit, body) in bodies.iter_mut().enumerate() {
             let start = (unit * LANES + index) * FIELDS * BLOCK;
             let block = &rows[start..start + FIELDS * BLOCK];
-            if !asked {
-                body::skip(track, body, head);
-            } else if unit >= tight_from {
+            if unit >= tight_from {
                 leeway::points::<V, CERTIFY, true>(track, body, block, tight.unit(unit), shift, head, minima);
             } else {
                 leeway::points::<V, CERTIFY, false>(track, body, block, &[], shift, head, minima);
             }
         }
+    }
+
+    /// Leaves out the block that was driven last.
+    fn pass_over(&mut self) {
+        self.bodies.iter_mut().for_each(|body| body::skip(self.ride.track, body, self.head));
+    }
+
+    /// Goes on to the next block, or ends.
+    fn go_on(&mut self) {
+        let Self { ride: Ride { track, model, scope, .. }, bodies, minima, .. } = self;
         self.head += BLOCK;
         // Nothing else counts when all of the vehicle has left.
         let whole = 0..track.count;
