@@ -12,12 +12,21 @@ ROOT = Path(__file__).resolve().parents[2]
 VEHICLES = ("AU-SEMI19", "AGV-TUG4")
 
 
-def pytest_runtest_logreport(report: pytest.TestReport) -> None:
-    """Notes what is skipped, where `.ci/run` asks for it."""
+def note_skipped(report: pytest.TestReport | pytest.CollectReport) -> None:
+    """Notes what is skipped, where `.ci/run` asks for it. It decides by the reason, so it has to know new reasons."""
     listed = os.environ.get("NETCERT_SKIPPED")
     if report.skipped and listed and isinstance(report.longrepr, tuple):
         with open(listed, "a", encoding="utf-8") as out:
             out.write(f"test in Python\t{report.nodeid}: {report.longrepr[2]}\n")
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    note_skipped(report)
+
+
+def pytest_collectreport(report: pytest.CollectReport) -> None:
+    """A file is skipped whole before its tests are found."""
+    note_skipped(report)
 
 
 def program() -> Path:

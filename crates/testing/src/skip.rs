@@ -4,7 +4,8 @@
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Says that a test is skipped without this judge, and why. `judge` is the name of a program, of an extract, or of what else is asked.
+/// Says that a test is skipped without this judge, and why. `judge` is the name of a program, of an extract, or of what else is asked. A name
+/// that is neither must be known to `is_here` of `.ci/run`: other names with a space fail there.
 pub fn skipped(judge: &str, why: &str) {
     eprintln!("skipped: no {judge} ({why})");
     let Some(list) = std::env::var_os("NETCERT_SKIPPED") else { return };
