@@ -117,6 +117,11 @@ pub(crate) fn drawn(seed: u64) -> Extract {
         ways.extend(arms.map(|(a, b)| (vec![a, b], "highway=tertiary width=7.5")));
         ways.push(([&ring[..], &ring[..1]].concat(), "highway=tertiary junction=roundabout width=9"));
     }
+    extract_of(&nodes, ways)
+}
+
+/// The extract of ways, given as their nodes and tags.
+fn extract_of(nodes: &BTreeMap<i64, LonLat>, ways: Vec<(Vec<i64>, &str)>) -> Extract {
     let mut extract = Extract::default();
     for (id, (refs, tags)) in (1..).zip(ways) {
         let start = extract.refs.len() as u32;

@@ -59,6 +59,45 @@ impl Mutations {
     fn with(&mut self, name: &str, change: impl Fn(&mut Value) -> bool + Sync + Send + 'static) {
         self.0.push((name.to_owned(), Box::new(change)));
     }
+
+    /// Single stations, and what is told of them.
+    fn add_stations(&mut self, document: &Value) {
+        let stations = document["corridor"]["stations"].as_array().unwrap().len();
+        for k in (0..stations).step_by(stations / 3) {
+            for (member, by) in [("x", 0.1), ("y", 0.1), ("heading", 0.05), ("curvature", 0.2), ("s", 0.1)] {
+                self.with("station bent", move |v| add(&mut v["corridor"]["stations"][k][member], by));
+            }
+            for side in ["left", "right"] {
+                self.with("station narrowed", move |v| scale(&mut v["corridor"]["stations"][k][side], 0.3));
+            }
+            self.with("plan point moved", move |v| add(&mut v["plan"][k][1], 0.1));
+            self.with("tube time", move |v| set(&mut v["tubes"][0]["t"][k], json!(-1.0)));
+            self.with("tube smaller", move |v| scale(&mut v["tubes"][1]["lateral_m"][k], 0.5));
+            self.with("tube moved", move |v| add(&mut v["tubes"][1]["centre"][k][0], 0.5));
+            self.with("tube shape", move |v| scale(&mut v["tubes"][0]["shape"][k][2], 2.0));
+        }
+    }
+
+    /// The vehicle's units.
+    fn add_units(&mut self, document: &Value) {
+        let units = document["vehicle"]["unit"].as_array().unwrap().len();
+        for unit in 0..units {
+            for (field, by) in [
+                ("width_m", 0.2),
+                ("coupling_to_axle_m", 0.5),
+                ("hitch_offset_m", -0.4),
+                ("front_overhang_m", if unit == 0 { 1.0 } else { 6.0 }),
+                ("rear_overhang_m", if unit == 0 { 8.0 } else { 1.0 }),
+                ("sway_deg", 0.5),
+                ("max_articulation_deg", -30.0),
+            ] {
+                if field == "hitch_offset_m" && unit + 1 == units {
+                    continue;
+                }
+                self.with(&format!("unit {unit} {field}"), move |v| add(&mut v["vehicle"]["unit"][unit][field], by));
+            }
+        }
+    }
 }
 
 /// Every member, moved in the direction that makes the certificate promise more than it may, by an amount that matters: widths and
@@ -115,39 +154,10 @@ fn mutations(document: &Value) -> Mutations {
             all.with("leeway up", move |v| each(&mut v["leeway"][&column], |x| add(x, 0.1)));
         }
     }
-    let stations = document["corridor"]["stations"].as_array().unwrap().len();
-    for k in (0..stations).step_by(stations / 3) {
-        for (member, by) in [("x", 0.1), ("y", 0.1), ("heading", 0.05), ("curvature", 0.2), ("s", 0.1)] {
-            all.with("station bent", move |v| add(&mut v["corridor"]["stations"][k][member], by));
-        }
-        for side in ["left", "right"] {
-            all.with("station narrowed", move |v| scale(&mut v["corridor"]["stations"][k][side], 0.3));
-        }
-        all.with("plan point moved", move |v| add(&mut v["plan"][k][1], 0.1));
-        all.with("tube time", move |v| set(&mut v["tubes"][0]["t"][k], json!(-1.0)));
-        all.with("tube smaller", move |v| scale(&mut v["tubes"][1]["lateral_m"][k], 0.5));
-        all.with("tube moved", move |v| add(&mut v["tubes"][1]["centre"][k][0], 0.5));
-        all.with("tube shape", move |v| scale(&mut v["tubes"][0]["shape"][k][2], 2.0));
-    }
+    all.add_stations(document);
     all.with("plan to the left", |v| plan_moved(v, 0.3));
     all.with("plan to the right", |v| plan_moved(v, -0.3));
-    let units = document["vehicle"]["unit"].as_array().unwrap().len();
-    for unit in 0..units {
-        for (field, by) in [
-            ("width_m", 0.2),
-            ("coupling_to_axle_m", 0.5),
-            ("hitch_offset_m", -0.4),
-            ("front_overhang_m", if unit == 0 { 1.0 } else { 6.0 }),
-            ("rear_overhang_m", if unit == 0 { 8.0 } else { 1.0 }),
-            ("sway_deg", 0.5),
-            ("max_articulation_deg", -30.0),
-        ] {
-            if field == "hitch_offset_m" && unit + 1 == units {
-                continue;
-            }
-            all.with(&format!("unit {unit} {field}"), move |v| add(&mut v["vehicle"]["unit"][unit][field], by));
-        }
-    }
+    all.add_units(document);
     all.with("eps", |v| add(&mut v["vehicle"]["tracking_tolerance_m"], 0.1) & add(&mut v["tracking_tolerance_m"], 0.1));
     all.with("heading tolerance", |v| add(&mut v["vehicle"]["tracking_heading_deg"], 5.0));
     for member in document.as_object().unwrap().keys() {

@@ -64,9 +64,26 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
     let drawn: Vec<&PathBuf> =
         files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
 
-    let (mut connectors, mut account, mut roads) = (Connectors::default(), Account::default(), Vec::new());
-    let (mut of_connectors, mut of_segments) = (false, false);
     progress("connectors");
+    let connectors = read_connectors(&tables, &drawn, first)?;
+    progress("segments");
+    let mut account = Account::default();
+    let roads = read_roads(&tables, &drawn, &connectors, &mut account)?;
+
+    let (mut extract, segments) = gather::extract(roads, &connectors, &mut account, first)?;
+    extract.account.blake3 = hash;
+    // Segments of a download by box reach beyond it, and their connectors there are missing. The box is then where the data end.
+    if account.has_noted(account::CONNECTOR, "missing") {
+        let nanodegrees = |bounds: [i32; 4]| bounds.map(|side| i64::from(side) * 100);
+        extract.account.header.bbox_nanodegrees = connectors.bounds().map(nanodegrees);
+    }
+    Ok(Read { extract, account, segments })
+}
+
+/// The connectors of all files. Fails if there are no connectors or no segments, of which `first` is told.
+fn read_connectors(tables: &[Table<'_>], drawn: &[&PathBuf], first: &Path) -> Result<Connectors, OvertureError> {
+    let mut connectors = Connectors::default();
+    let (mut of_connectors, mut of_segments) = (false, false);
     for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {
         of_connectors = true;
         let groups = table.each(|some, record| {
@@ -76,7 +93,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
         })?;
         groups.into_iter().for_each(|some| connectors.add(some));
     }
-    for path in &drawn {
+    for path in drawn {
         geojson::each(path, &mut |feature| {
             match feature.kind() {
                 "connector" => of_connectors = true,
@@ -97,15 +114,24 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
             return Err(OvertureError::of_file(first, problem));
         }
     }
+    Ok(connectors)
+}
 
-    progress("segments");
+/// The roads of all segments. What becomes of each segment is added to the account.
+fn read_roads(
+    tables: &[Table<'_>],
+    drawn: &[&PathBuf],
+    connectors: &Connectors,
+    account: &mut Account,
+) -> Result<Vec<Road>, OvertureError> {
+    let mut roads = Vec::new();
     for table in tables.iter().filter(|table| table.kind == Kind::Segments) {
         let groups = table.each(|some: &mut Vec<(Option<Road>, Account)>, record| {
             let id = record.id.clone();
             let road = || {
                 let segment = record::Segment::read(record.columns)?;
                 let places = geometry::line(&record.geometry)?;
-                made(Feature { id: record.id, places, segment }, &connectors)
+                made(Feature { id: record.id, places, segment }, connectors)
             };
             some.push(road().map_err(|problem| (Some(id), problem))?);
             Ok(())
@@ -115,7 +141,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
             account.add(&of_road);
         }
     }
-    for path in &drawn {
+    for path in drawn {
         geojson::each(path, &mut |feature| {
             if feature.kind() != "segment" {
                 return Ok(());
@@ -124,22 +150,14 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
                 let places = geometry::of_json(&feature.geometry, "LineString")?;
                 Ok((places, record::Segment::read(std::mem::take(&mut feature.properties))?))
             })?;
-            let (road, of_road) = made(Feature { id: id.clone(), places, segment }, &connectors)
-                .map_err(|problem| (Some(id), problem))?;
+            let (road, of_road) =
+                made(Feature { id: id.clone(), places, segment }, connectors).map_err(|problem| (Some(id), problem))?;
             roads.extend(road);
             account.add(&of_road);
             Ok(())
         })?;
     }
-
-    let (mut extract, segments) = gather::extract(roads, &connectors, &mut account, first)?;
-    extract.account.blake3 = hash;
-    // Segments of a download by box reach beyond it, and their connectors there are missing. The box is then where the data end.
-    if account.has_noted(account::CONNECTOR, "missing") {
-        let nanodegrees = |bounds: [i32; 4]| bounds.map(|side| i64::from(side) * 100);
-        extract.account.header.bbox_nanodegrees = connectors.bounds().map(nanodegrees);
-    }
-    Ok(Read { extract, account, segments })
+    Ok(roads)
 }
 
 fn made(feature: Feature, connectors: &Connectors) -> Result<(Option<Road>, Account), Problem> {

@@ -113,14 +113,7 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     if changed.added.is_empty() && changed.removed.is_empty() {
         return Ok(changed);
     }
-    let decision = evidence::decide(&network, &mut register.entries);
-    let new: BTreeSet<i64> = changed.added.iter().map(|entry| entry.no).collect();
-    changed.added = register.entries.iter().filter(|entry| new.contains(&entry.no)).cloned().collect();
-    let of_new = |conflict: &Conflict| conflict.entries.iter().any(|no| new.contains(no));
-    changed.conflicts = decision.conflicts.into_iter().filter(of_new).collect();
-    let (edges, nodes) = network.site.differences(&decision.site);
-    network.site = decision.site;
-    (changed.edges, changed.junctions) = (edges.len(), nodes.len());
+    let (edges, nodes) = decide(&mut network, &mut register, &mut changed);
 
     let ingest = db.settings_of_new_sets()?;
     let facts = if db.keeps_turns()? { Some(turn_facts(&network, &ingest.kerbs)) } else { None };
@@ -176,6 +169,20 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     changed.summary.stage("store", clock, register.entries.len() as u64, "measurements");
     changed.summary.account = account;
     Ok(changed)
+}
+
+/// Decides which measurements hold now, and takes them into the network. Returns the ids of the edges and the nodes where it differs from
+/// before.
+fn decide(network: &mut Network, register: &mut Register, changed: &mut EvidenceChanged) -> (Vec<i64>, Vec<NodeId>) {
+    let decision = evidence::decide(network, &mut register.entries);
+    let new: BTreeSet<i64> = changed.added.iter().map(|entry| entry.no).collect();
+    changed.added = register.entries.iter().filter(|entry| new.contains(&entry.no)).cloned().collect();
+    let of_new = |conflict: &Conflict| conflict.entries.iter().any(|no| new.contains(no));
+    changed.conflicts = decision.conflicts.into_iter().filter(of_new).collect();
+    let (edges, nodes) = network.site.differences(&decision.site);
+    network.site = decision.site;
+    (changed.edges, changed.junctions) = (edges.len(), nodes.len());
+    (edges, nodes)
 }
 
 /// Changes the register. Returns the input's name and the parameters for the `run` record.

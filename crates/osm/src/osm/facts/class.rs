@@ -129,6 +129,25 @@ fn is_width(head: &str, suffix: &str) -> bool {
     }
 }
 
+/// Why a way of a class is no road for heavy vehicles, by its other tags.
+fn left_out(
+    class: RoadClass,
+    basics: &Basics<'_>,
+    legal: &LegalTags<'_>,
+    section: &SectionReader,
+) -> Option<&'static str> {
+    if basics.area {
+        return Some(AREA);
+    }
+    let minor =
+        matches!(basics.service, "parking_aisle" | "driveway" | "drive-through" | "drive_through" | "emergency_access");
+    if class == RoadClass::Service && minor && !legal.access.open_to_hgv() {
+        return Some(MINOR_SERVICE);
+    }
+    let known = basics.grade1 || section.has_width();
+    (class == RoadClass::Track && !(legal.access.explicitly_open() && known)).then_some(TRACK)
+}
+
 /// Reads the facts of a way from its tags.
 ///
 /// # Errors
@@ -161,16 +180,8 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         unreadable.iter().for_each(|&(key, value)| legal.take_unreadable_width(key, value));
     }
 
-    if basics.area {
-        return Err(AREA);
-    }
-    let minor =
-        matches!(basics.service, "parking_aisle" | "driveway" | "drive-through" | "drive_through" | "emergency_access");
-    if class == RoadClass::Service && minor && !legal.access.open_to_hgv() {
-        return Err(MINOR_SERVICE);
-    }
-    if class == RoadClass::Track && !(legal.access.explicitly_open() && (basics.grade1 || section.has_width())) {
-        return Err(TRACK);
+    if let Some(reason) = left_out(class, &basics, &legal, &section) {
+        return Err(reason);
     }
     if class == RoadClass::Busway {
         legal.access.imply_no_motor_vehicles();

@@ -239,78 +239,17 @@ where
     /// Runs all passes. `None` if the `leading` blobs hold more than they should.
     fn run(&mut self, leading: Leading) -> Result<Option<Extract>, ReadError> {
         let changed = write::blocks_of(self.changes);
-        let mut areas = AreaGatherer::default();
-        let read_areas = |bytes: &[u8]| backdrop::areas(&Block::parse(bytes)?, self.changes);
-        let take_areas = |_: Frame, _: Compression, batch| {
-            areas.add(batch);
-            Ok(())
-        };
-        let with_relations = self.data.get(leading.no_relations..).unwrap_or_default();
-        pass::run(&mut self.source, with_relations, read_areas, take_areas, |_| ())?;
-        for block in &changed {
-            let batch = Block::parse(block).and_then(|block| backdrop::areas(&block, &Changes::default()));
-            areas.add(batch.map_err(|problem| self.source.error(None, problem))?);
-        }
-        let members = areas.members();
-
         let mut account = ReadAccount::default();
-        let (presumed, rest) = self.data.split_at_checked(leading.nodes).unwrap_or_default();
-        let mut with_nodes = presumed.to_vec();
-        let mut ways = WayGatherer::default();
-        let mut mistaken = false;
-        let mut without_relations = leading.no_relations - presumed.len();
-        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, &members, self.changes);
-        let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
-            *account.blobs.entry(compression.name()).or_default() += 1;
-            if batch.has_nodes {
-                with_nodes.push(frame);
-            }
-            if without_relations > 0 {
-                without_relations -= 1;
-                mistaken |= batch.relations.found;
-            }
-            ways.add(batch)
-        };
-        pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
-        if mistaken {
+        let areas = self.gather_areas(leading, &changed)?;
+        let Some((mut ways, with_nodes)) = self.gather_ways(leading, &changed, &areas.members(), &mut account)? else {
             return Ok(None);
-        }
-        for block in &changed {
-            let read = |block: Block<'_>| ways::read(&block, &self.way, &members, &Changes::default());
-            let batch = Block::parse(block).and_then(read);
-            batch.and_then(|batch| ways.add(batch)).map_err(|problem| self.source.error(None, problem))?;
-        }
-        ways.finish();
-
+        };
         let (ids, backdrop_ids) = (ways.node_ids(), ways.backdrop_node_ids());
         let wanted = nodes::Ids { named: &ids, backdrop: &backdrop_ids };
-        let mut nodes = NodeGatherer::new(ids.len(), backdrop_ids.len());
-        let mut presumed_left = presumed.len();
-        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, wanted, &self.point, self.changes);
-        let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
-            if presumed_left > 0 {
-                presumed_left -= 1;
-                mistaken |= batch.has_others;
-                *account.blobs.entry(compression.name()).or_default() += 1;
-            }
-            nodes.add(batch);
-            Ok(())
-        };
-        pass::run(
-            &mut self.source,
-            &with_nodes,
-            read_nodes,
-            take_nodes,
-            report(self.progress, Stage::Nodes, &with_nodes),
-        )?;
-        if mistaken {
+        let Some(mut nodes) = self.gather_nodes(leading, &with_nodes, &changed, wanted, &mut account)? else {
             return Ok(None);
-        }
-        for block in &changed {
-            let block = Block::parse(block);
-            let batch = block.and_then(|block| nodes::read(&block, wanted, &self.point, &Changes::default()));
-            nodes.add(batch.map_err(|problem| self.source.error(None, problem))?);
-        }
+        };
+
         let of_backdrop = nodes.backdrop(backdrop_ids, &ways.inline_places);
         let places = std::mem::take(&mut nodes.place_nodes);
         let (backdrop, tally) = areas.finish(std::mem::take(&mut ways.backdrop), places, &of_backdrop);
@@ -337,6 +276,102 @@ where
             strings: ways.strings,
             account,
         }))
+    }
+
+    /// The pass over relations: multipolygons of the backdrop. `changed` are the blocks of the changes.
+    fn gather_areas(&mut self, leading: Leading, changed: &[Vec<u8>]) -> Result<AreaGatherer, ReadError> {
+        let mut areas = AreaGatherer::default();
+        let read_areas = |bytes: &[u8]| backdrop::areas(&Block::parse(bytes)?, self.changes);
+        let take_areas = |_: Frame, _: Compression, batch| {
+            areas.add(batch);
+            Ok(())
+        };
+        let with_relations = self.data.get(leading.no_relations..).unwrap_or_default();
+        pass::run(&mut self.source, with_relations, read_areas, take_areas, |_| ())?;
+        for block in changed {
+            let batch = Block::parse(block).and_then(|block| backdrop::areas(&block, &Changes::default()));
+            areas.add(batch.map_err(|problem| self.source.error(None, problem))?);
+        }
+        Ok(areas)
+    }
+
+    /// The pass over ways and relations: ways, and the blobs that may hold nodes. `members` are ways of the backdrop's areas. `None` if
+    /// relations were found where none should be.
+    fn gather_ways(
+        &mut self,
+        leading: Leading,
+        changed: &[Vec<u8>],
+        members: &[i64],
+        account: &mut ReadAccount,
+    ) -> Result<Option<(WayGatherer, Vec<Frame>)>, ReadError> {
+        let (presumed, rest) = self.data.split_at_checked(leading.nodes).unwrap_or_default();
+        let mut with_nodes = presumed.to_vec();
+        let mut ways = WayGatherer::default();
+        let mut mistaken = false;
+        let mut without_relations = leading.no_relations - presumed.len();
+        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, members, self.changes);
+        let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
+            *account.blobs.entry(compression.name()).or_default() += 1;
+            if batch.has_nodes {
+                with_nodes.push(frame);
+            }
+            if without_relations > 0 {
+                without_relations -= 1;
+                mistaken |= batch.relations.found;
+            }
+            ways.add(batch)
+        };
+        pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
+        if mistaken {
+            return Ok(None);
+        }
+        for block in changed {
+            let read = |block: Block<'_>| ways::read(&block, &self.way, members, &Changes::default());
+            let batch = Block::parse(block).and_then(read);
+            batch.and_then(|batch| ways.add(batch)).map_err(|problem| self.source.error(None, problem))?;
+        }
+        ways.finish();
+        Ok(Some((ways, with_nodes)))
+    }
+
+    /// The pass over the blobs with nodes: those that are `wanted`. `None` if something else was found in the leading blobs.
+    fn gather_nodes(
+        &mut self,
+        leading: Leading,
+        with_nodes: &[Frame],
+        changed: &[Vec<u8>],
+        wanted: nodes::Ids<'_>,
+        account: &mut ReadAccount,
+    ) -> Result<Option<NodeGatherer>, ReadError> {
+        let mut nodes = NodeGatherer::new(wanted.named.len(), wanted.backdrop.len());
+        let mut mistaken = false;
+        let mut presumed_left = self.data.get(..leading.nodes).map_or(0, <[Frame]>::len);
+        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, wanted, &self.point, self.changes);
+        let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
+            if presumed_left > 0 {
+                presumed_left -= 1;
+                mistaken |= batch.has_others;
+                *account.blobs.entry(compression.name()).or_default() += 1;
+            }
+            nodes.add(batch);
+            Ok(())
+        };
+        pass::run(
+            &mut self.source,
+            with_nodes,
+            read_nodes,
+            take_nodes,
+            report(self.progress, Stage::Nodes, with_nodes),
+        )?;
+        if mistaken {
+            return Ok(None);
+        }
+        for block in changed {
+            let block = Block::parse(block);
+            let batch = block.and_then(|block| nodes::read(&block, wanted, &self.point, &Changes::default()));
+            nodes.add(batch.map_err(|problem| self.source.error(None, problem))?);
+        }
+        Ok(Some(nodes))
     }
 }
 
