@@ -10,7 +10,7 @@ mod road;
 
 use std::time::Instant;
 
-use netcert::check::{Chain, Reading, SpanClaim, Subject, shift};
+use netcert::check::{Chain, SpanClaim, StationReading, Subject, shift};
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Catalogue;
 
@@ -41,7 +41,7 @@ fn main() {
             })
             .collect();
         let start = Instant::now();
-        let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
+        let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), StationReading::Strict).unwrap();
         let refuted = subject.check(&claims).iter().filter(|found| !found.is_empty()).count();
         let checked = km / start.elapsed().as_secs_f64();
         println!(

@@ -7,7 +7,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use netcert::evidence::{Along, Match, Place, Quantity, Row, Value, match_rows};
+use netcert::evidence::{Along, Match, MeasurementRow, Place, Quantity, Value, match_rows};
 use netcert::network::{EdgeNo, Network, build};
 use netcert::osm::facts::{Countries, cross_sections};
 use netcert::osm::{LonLat, pbf::read_extract};
@@ -35,7 +35,7 @@ impl Random {
 }
 
 /// A row for an edge, with the edge's number.
-fn noisy(network: &Network, random: &mut Random, number: usize) -> (EdgeNo, Row) {
+fn noisy(network: &Network, random: &mut Random, number: usize) -> (EdgeNo, MeasurementRow) {
     let index = (random.below_one() * network.edges.len() as f64) as usize;
     let edge = &network.edges[index];
     let [east_m, north_m] = random.normal();
@@ -45,7 +45,7 @@ fn noisy(network: &Network, random: &mut Random, number: usize) -> (EdgeNo, Row)
         lat_e7: at.lat_e7 + e7(north_m).round() as i32,
     };
     let name = network.road(edge).name.filter(|_| number.is_multiple_of(2));
-    let row = Row {
+    let row = MeasurementRow {
         number: number as u64,
         id: None,
         quantity: Quantity::CarriagewayWidth,
@@ -72,7 +72,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cross_sections(facts, place, ring_radius_m, countries.rules())
     });
     let mut random = Random(1);
-    let (truth, rows): (Vec<EdgeNo>, Vec<Row>) = (0..ROWS).map(|number| noisy(&network, &mut random, number)).unzip();
+    let (truth, rows): (Vec<EdgeNo>, Vec<MeasurementRow>) =
+        (0..ROWS).map(|number| noisy(&network, &mut random, number)).unzip();
     let start = Instant::now();
     let matches = match_rows(&network, &rows);
     let seconds = start.elapsed().as_secs_f64();

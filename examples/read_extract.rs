@@ -4,12 +4,12 @@
 
 use std::{path::PathBuf, sync::Mutex, time::Instant};
 
-use netcert::osm::pbf::{Progress, Stage, read_extract};
+use netcert::osm::pbf::{Progress, ReadingStage, read_extract};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args_os().nth(1).map(PathBuf::from).ok_or("usage: read_extract FILE.osm.pbf")?;
     let start = Instant::now();
-    let ends: Mutex<Vec<(Stage, f64)>> = Mutex::default();
+    let ends: Mutex<Vec<(ReadingStage, f64)>> = Mutex::default();
     let note = |progress: Progress| {
         let Ok(mut ends) = ends.lock() else { return };
         if ends.last().is_none_or(|(stage, _)| *stage != progress.stage) {

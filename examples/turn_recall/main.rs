@@ -16,7 +16,7 @@ use netcert::store::Database;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
 use netcert::words::Named as _;
-use netcert_oracle::crossing::{Crossing, Pose};
+use netcert_oracle::crossing::{Crossing, CrossingPose};
 use netcert_oracle::planner::drivable;
 use rayon::prelude::*;
 
@@ -109,7 +109,7 @@ fn crossing(network: &Network, ends: [EdgeNo; 2], row: &TurnRow, beyond: bool, p
         beyond,
         split: false,
         islands: Vec::new(),
-        pose: Pose { mirrored: false, heading: 0.0, at: [0.0; 2] },
+        pose: CrossingPose { mirrored: false, heading: 0.0, at: [0.0; 2] },
     };
     crossing.islands = crossing.beside_lanes();
     Some(crossing)

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use netcert::rows::{Cell, Column, Kind};
+use netcert::rows::{Cell, Column, ColumnKind};
 use netcert::stet::{Case, Model, Planned, certify_cases};
 use netcert::words::{Named as _, verdict_words};
 use pyo3::prelude::*;
@@ -19,17 +19,17 @@ use crate::{error, work};
 const CASES_AT_ONCE: usize = 32;
 
 const COLUMNS: [Column; 11] = [
-    ("corridor", Kind::Integer),
-    ("vehicle_id", Kind::Text),
-    ("verdict", Kind::Text),
-    ("reason", Kind::Text),
-    ("rsc_m", Kind::Real),
-    ("rsc_published_m", Kind::Real),
-    ("hinge_margin_deg", Kind::Real),
-    ("shrink", Kind::Real),
-    ("limiting_s_m", Kind::Real),
-    ("limiting_unit", Kind::Integer),
-    ("limiting_side", Kind::Text),
+    ("corridor", ColumnKind::Integer),
+    ("vehicle_id", ColumnKind::Text),
+    ("verdict", ColumnKind::Text),
+    ("reason", ColumnKind::Text),
+    ("rsc_m", ColumnKind::Real),
+    ("rsc_published_m", ColumnKind::Real),
+    ("hinge_margin_deg", ColumnKind::Real),
+    ("shrink", ColumnKind::Real),
+    ("limiting_s_m", ColumnKind::Real),
+    ("limiting_unit", ColumnKind::Integer),
+    ("limiting_side", ColumnKind::Text),
 ];
 
 /// Certifies each vehicle on each corridor, on all cores. The rows are those of `certify`, corridor by corridor.

@@ -11,7 +11,7 @@ use arrow_array::{
 use arrow_buffer::{OffsetBuffer, ScalarBuffer};
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
 use netcert::osm::LonLat;
-use netcert::rows::{Cell, Column, Kind};
+use netcert::rows::{Cell, Column, ColumnKind};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
@@ -37,12 +37,12 @@ enum Values {
 }
 
 impl Values {
-    fn new(kind: Kind) -> Self {
+    fn new(kind: ColumnKind) -> Self {
         match kind {
-            Kind::Integer => Self::Integer(Vec::new()),
-            Kind::Real => Self::Real(Vec::new()),
-            Kind::Text => Self::Text(Vec::new()),
-            Kind::Flag => Self::Flag(Vec::new()),
+            ColumnKind::Integer => Self::Integer(Vec::new()),
+            ColumnKind::Real => Self::Real(Vec::new()),
+            ColumnKind::Text => Self::Text(Vec::new()),
+            ColumnKind::Flag => Self::Flag(Vec::new()),
         }
     }
 
@@ -116,10 +116,10 @@ impl Columns {
     /// A table with these columns.
     pub(crate) fn new(columns: &[Column]) -> Self {
         let field = |(name, kind): &Column| match kind {
-            Kind::Integer => Field::new(*name, DataType::Int64, true),
-            Kind::Real => Field::new(*name, DataType::Float64, true),
-            Kind::Text => Field::new(*name, DataType::Utf8, true),
-            Kind::Flag => Field::new(*name, DataType::Boolean, false),
+            ColumnKind::Integer => Field::new(*name, DataType::Int64, true),
+            ColumnKind::Real => Field::new(*name, DataType::Float64, true),
+            ColumnKind::Text => Field::new(*name, DataType::Utf8, true),
+            ColumnKind::Flag => Field::new(*name, DataType::Boolean, false),
         };
         Self {
             schema: Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>())),

@@ -16,7 +16,7 @@ mod tubes;
 
 use serde_json::{Value, json};
 
-use crate::corridor::{Area, AreaSpan, FileCorridor, FrameError};
+use crate::corridor::{AreaSpan, FileCorridor, FrameError, PlaneArea};
 use crate::seal::sealed;
 use crate::stet::{Certificate, Model, Options, known_m};
 use crate::words::{Named as _, verdict_words};
@@ -151,7 +151,8 @@ fn corridor_member(given: &FileCorridor, frame: &Value) -> Result<Value, FrameEr
     let corridor = &given.corridor;
     let mut all = json!({"frame": frame, "spacing_m": corridor.spacing_m, "stations": stations(given)?});
     if !corridor.areas.is_empty() {
-        let rings = |area: &Area| area.rings.iter().map(|ring| given.to_input(ring)).collect::<Result<Vec<_>, _>>();
+        let rings =
+            |area: &PlaneArea| area.rings.iter().map(|ring| given.to_input(ring)).collect::<Result<Vec<_>, _>>();
         let area = |span: &AreaSpan| {
             let last = span.heads.end.saturating_sub(1);
             Ok(json!({"heads": [span.heads.start, last], "rings": rings(&span.area)?}))

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueHint};
-use netcert::cluster::{ABOUT, Origin, RegionFolder, TASKS, TaskWriter};
+use netcert::cluster::{ABOUT, ExtractOrigin, RegionFolder, TASKS, TaskWriter};
 use netcert::export::{Destination, ExportError, Layout, Out, Unfinished};
 use netcert::pipeline::{self, EDGES_OF_A_TASK, RunError};
 
@@ -79,7 +79,7 @@ impl Cells {
         table.close().map_err(|error| destination.name(error))?;
         let (tasks, edges) = (divided.tasks, divided.edges);
         let (country, driving_side, roads) = self.roads.given();
-        let origin = Origin { extract, country, driving_side, roads };
+        let origin = ExtractOrigin { extract, country, driving_side, roads };
         let about = RegionFolder { divided, edges_at_once: self.edges_at_once, origin };
         destination.write_whole(ABOUT, about.text().as_bytes()).map_err(|error| destination.name(error))?;
         destination.finish()?;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use netcert::diff::{Change, RoadChange, Row, Sums, edges, notes, turns};
+use netcert::diff::{Change, ChangeRow, RoadChange, Sums, edges, notes, turns};
 use netcert::osm::facts::Policy;
 use netcert::rows::SetKey;
 use netcert::store::{CertifiedSet, Database, QueryOptions};
@@ -68,13 +68,13 @@ impl Diff {
             let mut sums = Sums::default();
             edges(told(old.query(&options)?), told(new.query(&options)?), |changed| {
                 sums.add_edge(&changed);
-                sink.row(&Row::of_edge(set, &changed))
+                sink.row(&ChangeRow::of_edge(set, &changed))
             })?;
             if *turned {
                 let (before, after) = (old.turn_rows(vehicle, *policy)?, new.turn_rows(vehicle, *policy)?);
                 turns(told(before), told(after), |changed| {
                     sums.add_turn(&changed);
-                    sink.row(&Row::of_turn(set, &changed))
+                    sink.row(&ChangeRow::of_turn(set, &changed))
                 })?;
             }
             sink.sums(set, &sums)?;
@@ -149,9 +149,9 @@ fn in_words(sums: &Sums, turned: bool) -> String {
     }
 }
 
-fn cells(row: &Row) -> String {
+fn cells(row: &ChangeRow) -> String {
     let cell = |name: &&str| csv(row.members.get(*name).unwrap_or(&Value::Null));
-    Row::MEMBERS.iter().map(cell).collect::<Vec<_>>().join(",")
+    ChangeRow::MEMBERS.iter().map(cell).collect::<Vec<_>>().join(",")
 }
 
 /// Writes the changes in one format.
@@ -168,7 +168,7 @@ impl Sink {
         let (old, new, scope) = (name(&diff.old), name(&diff.new), json!(SCOPE));
         match format {
             Format::Table => {}
-            Format::Csv => writeln!(out, "{}", Row::MEMBERS.join(","))?,
+            Format::Csv => writeln!(out, "{}", ChangeRow::MEMBERS.join(","))?,
             Format::Json => write!(
                 out,
                 "{{\"netcert\":\"{}\",\"old\":{old},\"new\":{new},\"scope\":{scope},\"changes\":[",
@@ -182,7 +182,7 @@ impl Sink {
         Ok(Self { format, out, rows: 0 })
     }
 
-    fn row(&mut self, row: &Option<Row>) -> anyhow::Result<()> {
+    fn row(&mut self, row: &Option<ChangeRow>) -> anyhow::Result<()> {
         let Some(row) = row else { return Ok(()) };
         let comma = if self.rows == 0 { "\n" } else { ",\n" };
         self.rows += 1;

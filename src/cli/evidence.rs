@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
-use netcert::evidence::{self, Along, Entry, Place, State, Target, Usage, Value};
+use netcert::evidence::{self, Along, Entry, MeasurementTarget, Place, State, Usage, Value};
 use netcert::pipeline::{self, EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What};
 use netcert::store::Database;
 use netcert::words::Named;
@@ -313,11 +313,11 @@ impl List {
 
 /// The place of a measurement in few words.
 fn where_told(entry: &Entry) -> String {
-    let place = |target: Target| match target {
-        Target::Edge(id) => format!("edge {id}"),
-        Target::Corner { node, edges: None } => format!("junction {node}"),
-        Target::Corner { node, edges: Some(_) } => format!("a corner of junction {node}"),
-        Target::Area(node) => format!("the surface of junction {node}"),
+    let place = |target: MeasurementTarget| match target {
+        MeasurementTarget::Edge(id) => format!("edge {id}"),
+        MeasurementTarget::Corner { node, edges: None } => format!("junction {node}"),
+        MeasurementTarget::Corner { node, edges: Some(_) } => format!("a corner of junction {node}"),
+        MeasurementTarget::Area(node) => format!("the surface of junction {node}"),
     };
     let more = entry.places.len().saturating_sub(1);
     match entry.targets().next() {
@@ -361,9 +361,9 @@ fn described(entry: &Entry) -> serde_json::Value {
         .places
         .iter()
         .map(|&(target, counts)| match target {
-            Target::Edge(id) => json!({"edge_id": id, "counts": counts}),
-            Target::Corner { node, edges } => json!({"junction": node, "edges": edges, "counts": counts}),
-            Target::Area(node) => json!({"surface_of": node, "counts": counts}),
+            MeasurementTarget::Edge(id) => json!({"edge_id": id, "counts": counts}),
+            MeasurementTarget::Corner { node, edges } => json!({"junction": node, "edges": edges, "counts": counts}),
+            MeasurementTarget::Area(node) => json!({"surface_of": node, "counts": counts}),
         })
         .collect();
     let direction = if row.along == Along::Both { None } else { Some(row.along.name()) };

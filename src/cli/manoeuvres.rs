@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
-use netcert::manoeuvres::{self, Finding, Measure, Report, STEADY_RADII_M, TurnMeasurements, beyond_limit};
+use netcert::manoeuvres::{
+    self, LimitFinding, ManoeuvreReport, PerformanceMeasure, STEADY_RADII_M, TurnMeasurements, beyond_limit,
+};
 use netcert::picture;
 use netcert::vehicle::Vehicle;
 use serde_json::{Value, json};
@@ -59,7 +61,7 @@ impl Manoeuvres {
             write_picture(path, &picture::manoeuvres(vehicle))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
-        let reports: Vec<(&Vehicle, Report)> = vehicles.iter().map(|v| (*v, manoeuvres::report(v))).collect();
+        let reports: Vec<(&Vehicle, ManoeuvreReport)> = vehicles.iter().map(|v| (*v, manoeuvres::report(v))).collect();
         let mut out = results();
         match (self.format, reports.as_slice()) {
             (TableFormat::Json, all) => {
@@ -75,12 +77,12 @@ impl Manoeuvres {
 }
 
 /// The strictest PBS level whose limit the measure keeps.
-fn level(report: &Report, measure: Measure) -> String {
-    let passed = |f: &&Finding| f.limit.measure == measure && f.passes && f.limit.who.starts_with("PBS level");
+fn level(report: &ManoeuvreReport, measure: PerformanceMeasure) -> String {
+    let passed = |f: &&LimitFinding| f.limit.measure == measure && f.passes && f.limit.who.starts_with("PBS level");
     report.findings.iter().find(passed).map_or("none".to_owned(), |f| f.limit.who.replace("PBS level ", "L"))
 }
 
-fn passes(report: &Report, measure: Measure, who: &str) -> &'static str {
+fn passes(report: &ManoeuvreReport, measure: PerformanceMeasure, who: &str) -> &'static str {
     let finding = report.findings.iter().find(|f| f.limit.measure == measure && f.limit.who.starts_with(who));
     finding.map_or("", |f| if f.passes { "yes" } else { "no" })
 }
@@ -94,7 +96,7 @@ fn hinge_deg(angles_rad: &[f64]) -> f64 {
     angles_rad.iter().skip(1).fold(0.0_f64, |most, &angle| most.max(angle)).to_degrees()
 }
 
-fn many(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> {
+fn many(out: &mut dyn Write, all: &[(&Vehicle, ManoeuvreReport)]) -> std::io::Result<()> {
     let mut table = Table::new(&[
         "id",
         ">swept 90°",
@@ -117,16 +119,16 @@ fn many(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> 
         table.row([
             v.id.clone(),
             width(&r.right_angle),
-            level(r, Measure::SweptPath),
+            level(r, PerformanceMeasure::SweptPath),
             format!("{:.2} m", r.right_angle.tail_swing_m),
-            level(r, Measure::TailSwing),
+            level(r, PerformanceMeasure::TailSwing),
             format!("{:.2} m", r.right_angle.frontal_swing_m),
             format!("{:.0}°", hinge_deg(&r.right_angle.angles_rad)),
             if beyond_limit(v, &r.u_turn.angles_rad).is_some() { "–".to_owned() } else { width(&r.u_turn) },
             circle(r.circle.inner_m),
-            passes(r, Measure::InnerRadius, "EU").to_owned(),
+            passes(r, PerformanceMeasure::InnerRadius, "EU").to_owned(),
             circle(r.circle.width_m()),
-            passes(r, Measure::RingWidth, "DE").to_owned(),
+            passes(r, PerformanceMeasure::RingWidth, "DE").to_owned(),
             circle(r.circle.swing_out_m),
             r.steady_offtracking_m[2].map_or("none".to_owned(), |m| format!("{m:.2} m")),
         ]);
@@ -140,7 +142,7 @@ fn many(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> 
     )
 }
 
-fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
+fn one(out: &mut dyn Write, v: &Vehicle, r: &ManoeuvreReport) -> std::io::Result<()> {
     writeln!(out, "{} {}\n", v.id, v.name)?;
     turns(out, v, r)?;
     angles(out, v, r)?;
@@ -151,7 +153,7 @@ fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
 }
 
 /// Prints what each turn sweeps, with its guide, then the circle and the steady off-tracking.
-fn turns(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
+fn turns(out: &mut dyn Write, v: &Vehicle, r: &ManoeuvreReport) -> std::io::Result<()> {
     let mut table =
         Table::new(&["turn", "guide", ">swept path", ">tail swing", ">frontal swing", ">last axle cuts in"]);
     for (name, turn, swept) in [
@@ -187,7 +189,7 @@ fn turns(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
 }
 
 /// Prints the measures beside the published limits, and the sources of the limits.
-fn limits(out: &mut dyn Write, r: &Report) -> std::io::Result<()> {
+fn limits(out: &mut dyn Write, r: &ManoeuvreReport) -> std::io::Result<()> {
     let mut table = Table::new(&["limit", "of", ">at", ">measured", "", "sureness"]);
     for f in &r.findings {
         let bound = if f.limit.measure.at_least() { "at least" } else { "at most" };
@@ -213,7 +215,7 @@ fn limits(out: &mut dyn Write, r: &Report) -> std::io::Result<()> {
 }
 
 /// Prints the greatest angles of steering and hinges in the turns, beside the angles that the vehicle allows.
-fn angles(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
+fn angles(out: &mut dyn Write, v: &Vehicle, r: &ManoeuvreReport) -> std::io::Result<()> {
     let mut table = Table::new(&["greatest angle", ">90°", ">180°", ">circle", ">allowed", ""]);
     for (i, unit) in v.units.iter().enumerate() {
         let of = |angles: &[f64]| angles.get(i).copied().unwrap_or(0.0).to_degrees();
@@ -232,7 +234,7 @@ fn angles(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     table.write(out, "  ")
 }
 
-fn json(v: &Vehicle, r: &Report) -> Value {
+fn json(v: &Vehicle, r: &ManoeuvreReport) -> Value {
     let degrees = |angles: &[f64]| angles.iter().map(|a| a.to_degrees()).collect::<Vec<f64>>();
     let swept = |s: &TurnMeasurements| {
         json!({
@@ -247,7 +249,7 @@ fn json(v: &Vehicle, r: &Report) -> Value {
         })
     };
     let steady = STEADY_RADII_M.iter().zip(&r.steady_offtracking_m);
-    let finding = |f: &Finding| {
+    let finding = |f: &LimitFinding| {
         json!({
             "measure": f.limit.measure.name(),
             "who": f.limit.who,
@@ -278,7 +280,7 @@ fn json(v: &Vehicle, r: &Report) -> Value {
 }
 
 /// Writes one line for each vehicle and limit, so that a spreadsheet can sort them.
-fn csv(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> {
+fn csv(out: &mut dyn Write, all: &[(&Vehicle, ManoeuvreReport)]) -> std::io::Result<()> {
     writeln!(out, "vehicle_id,measure,who,limit_m,at_least,measured_m,passes,sureness")?;
     for (v, r) in all {
         for f in &r.findings {

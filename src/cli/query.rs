@@ -9,7 +9,7 @@ use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, Relative};
 use netcert::settings::Needs;
-use netcert::store::{Area, Beside, CertifiedSet, Database, QueryOptions, ReferenceReader, TurnQuery};
+use netcert::store::{Area, CertifiedSet, Database, QueryOptions, ReferenceCertificates, ReferenceReader, TurnQuery};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, VerdictKind, at_local_time, verdict_words};
 
@@ -160,7 +160,7 @@ impl Query {
         vehicle: Option<&Vehicle>,
         policy: Policy,
         area: Option<Area>,
-        mut beside: Option<Beside<'_>>,
+        mut beside: Option<ReferenceCertificates<'_>>,
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m, needs_at_most_m) = (self.verdict, self.min_rsc, self.needs_at_most);
         let options =

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use clap::Args;
-use netcert::serve::{BaseMap, Editing, Limits, Options, Server};
+use netcert::serve::{BaseMap, Editing, Limits, Server, ServerOptions};
 
 use super::Session;
 use crate::cli::database::DatabaseArgs;
@@ -64,7 +64,7 @@ impl Serve {
         };
         crate::cli::session::logger::install();
         let clock = session.clock;
-        let server = Server::bind(Options {
+        let server = Server::bind(ServerOptions {
             db: self.db.path()?,
             before: self.before.clone(),
             addr: self.addr,

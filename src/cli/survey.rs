@@ -8,7 +8,7 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use netcert::picture;
 use netcert::route::{
-    Measure, Opens, Pair, Pairs, Planner, Position, SHEET_COLUMNS, SURVEY_COLUMNS, SURVEY_SCOPE, Snapper,
+    Measure, Opens, Pairs, PlacePair, Planner, Position, SHEET_COLUMNS, SURVEY_COLUMNS, SURVEY_SCOPE, Snapper,
     Survey as Found, SurveyLine, sheet_features, survey_pairs, survey_region,
 };
 use netcert::stop::Stop;
@@ -97,14 +97,14 @@ impl Survey {
         Ok(out.flush()?)
     }
 
-    fn find(&self, inputs: &RoutingInputs, pairs: Option<Vec<Pair>>, session: &Session) -> anyhow::Result<Found> {
+    fn find(&self, inputs: &RoutingInputs, pairs: Option<Vec<PlacePair>>, session: &Session) -> anyhow::Result<Found> {
         session.progress.in_time("survey", |stop| self.find_until(inputs, pairs, session, stop))
     }
 
     fn find_until(
         &self,
         inputs: &RoutingInputs,
-        pairs: Option<Vec<Pair>>,
+        pairs: Option<Vec<PlacePair>>,
         session: &Session,
         stop: &Stop,
     ) -> anyhow::Result<Found> {
@@ -135,7 +135,7 @@ impl Survey {
 }
 
 /// Reads a file of pairs.
-fn read_pairs(path: &Path) -> anyhow::Result<Vec<Pair>> {
+fn read_pairs(path: &Path) -> anyhow::Result<Vec<PlacePair>> {
     const COLUMNS: [&str; 4] = ["from_lon", "from_lat", "to_lon", "to_lat"];
     let failed = |error: ::csv::Error| anyhow!("{}: {error}", path.display());
     let mut reader = ::csv::ReaderBuilder::new().trim(::csv::Trim::All).from_path(path).map_err(failed)?;
@@ -156,7 +156,7 @@ fn read_pairs(path: &Path) -> anyhow::Result<Vec<Pair>> {
             let text = format!("{},{}", cell(columns[lon]), cell(columns[lat]));
             place(&text).map_err(|why| anyhow!("{}: line {line}: {text}: {why}", path.display()))
         };
-        pairs.push(Pair { from: at(0, 1)?, to: at(2, 3)? });
+        pairs.push(PlacePair { from: at(0, 1)?, to: at(2, 3)? });
     }
     if pairs.is_empty() {
         bail!("{}: no pairs; give a line for each of them below {}", path.display(), COLUMNS.join(","));

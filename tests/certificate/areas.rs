@@ -4,11 +4,11 @@
 
 use netcert_testing::catalogue::catalogued;
 
-use netcert::check::{Chain, Reading, SpanClaim, Subject, Weight, shift};
+use netcert::check::{Chain, SpanClaim, StationReading, Subject, Weight, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
-use netcert_testing::oracle::area_attack::{Found, attack_areas};
+use netcert_testing::oracle::area_attack::{AreaAttackOutcome, attack_areas};
 use netcert_testing::oracle::claim::claim;
 use netcert_testing::oracle::crossing::{Crossing, Manoeuvre};
 use netcert_testing::oracle::draw::Draw;
@@ -28,7 +28,7 @@ const SPARE_M: f64 = 0.3;
 struct Attacked {
     words: String,
     rsc_m: f64,
-    found: Found,
+    found: AreaAttackOutcome,
     refuted: Option<String>,
 }
 
@@ -161,7 +161,7 @@ fn the_second_program_confirms_turns_and_refutes_five_centimetres_more() {
             let corridor = crossing.corridor(&way, &vehicle);
             let (claim, plan) = planned(&corridor, &vehicle)?;
             let chain = Chain::new(&vehicle);
-            let subject = Subject::new(&chain, &corridor, shift(&plan), Reading::Lenient).unwrap();
+            let subject = Subject::new(&chain, &corridor, shift(&plan), StationReading::Lenient).unwrap();
             let more = SpanClaim { rsc_m: claim.rsc_m.map(|rsc_m| rsc_m + 0.05), ..claim.clone() };
             let [own, refuted] = [&claim, &more].map(|claim| {
                 let found = subject.check(std::slice::from_ref(claim)).remove(0);

@@ -1,17 +1,17 @@
 //! Hinge margins where a bend begins and ends between two stations (docs/proof.md, section 10). Curvature that is linear from station to
 //! station does not lead to the next station there. The course is then steepest between stations.
 
-use netcert::check::{Chain, Reading, SpanClaim, Subject, shift};
+use netcert::check::{Chain, SpanClaim, StationReading, Subject, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Vehicle;
-use netcert_testing::oracle::adversary::{Bounds, hinge_kernel};
+use netcert_testing::oracle::adversary::{AdversaryBounds, hinge_kernel};
 use netcert_testing::oracle::attack;
 use netcert_testing::oracle::claim::{Claim, claim};
 use netcert_testing::oracle::draw::{Bends, curvature_at};
 use netcert_testing::oracle::fleet;
 use netcert_testing::oracle::path::{along, direction, dot, left_of, wrapped};
-use netcert_testing::oracle::simulator::{Disturbance, Drive};
+use netcert_testing::oracle::simulator::{Disturbance, SimulatedDrive};
 
 /// Metres between stations, as on the map's turns.
 const SPACING_M: f64 = 0.5;
@@ -85,7 +85,8 @@ fn a_hinge_margin_is_confirmed_where_a_bend_ends_between_stations() {
                 shrink: result.shrink,
                 limiting: None,
             };
-            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
+            let subject =
+                Subject::new(&chain, &corridor, shift(&row.plan.coefficients), StationReading::Strict).unwrap();
             let found = subject.check(std::slice::from_ref(&claim)).remove(0);
             assert!(found.is_empty(), "{id}, {name}: {claim:?}: {found:?}");
             let more = SpanClaim { hinge_margin_rad: claim.hinge_margin_rad.map(|rad| rad + 0.03), ..claim };
@@ -103,11 +104,11 @@ fn spare(vehicle: &Vehicle, bends: &Bends) -> (f64, String) {
     let curve = sampled(bends, fine_m);
     let plan = curve.x.iter().zip(&curve.y).map(|(&x, &y)| [x, y]).collect();
     let path = attack::path(&curve, vehicle, &Claim { plan, ..claim });
-    let drive = Drive::new(vehicle, &path, 1);
+    let drive = SimulatedDrive::new(vehicle, &path, 1);
     let calm = Disturbance::none(drive.steps());
     let nominal = drive.whole(&calm);
     let slip = std::array::from_fn(|i| vehicle.units.get(i).map_or(0.0, |unit| unit.sway_rad));
-    let bounds = Bounds { steer_m: claim.shrink * vehicle.tracking_tolerance_m, change_m: 1.0, slip };
+    let bounds = AdversaryBounds { steer_m: claim.shrink * vehicle.tracking_tolerance_m, change_m: 1.0, slip };
     let memory = (4.0 * vehicle.length_m / fine_m) as usize;
     let first = path.span_of_vertex(((STRAIGHT_M - 1.0) / fine_m) as usize);
     let mut least = (f64::INFINITY, String::new());

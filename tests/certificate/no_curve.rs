@@ -1,6 +1,6 @@
 //! Nothing is certified at stations that do not form a curve, nor just behind them.
 
-use netcert::check::{Chain, Reading, SpanClaim, Subject, Weight};
+use netcert::check::{Chain, SpanClaim, StationReading, Subject, Weight};
 use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{Model, Options, SpanResult, certify, certify_planned};
 use netcert::stop::Stop;
@@ -57,7 +57,7 @@ fn nor_while_the_vehicle_stands_there_nor_until_its_units_have_settled() {
 fn the_second_program_confirms_nothing_there_either() {
     let corridor = torn();
     let chain = Chain::new(&catalogued("EU-SEMI16.5"));
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Lenient).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Lenient).unwrap();
     let claim =
         |stations| SpanClaim { stations, rsc_m: Some(0.0), hinge_margin_rad: None, shrink: 1.0, limiting: None };
     let claims = [0..60, 140..160, 240..300, 330..360, 520..570].map(claim);

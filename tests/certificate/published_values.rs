@@ -9,7 +9,7 @@ use netcert::stet::motion::{Pose, sweep_path};
 use netcert::stet::steady_offtracking;
 use netcert::vehicle::Vehicle;
 use netcert_testing::oracle::fleet;
-use netcert_testing::oracle::simulator::Drive;
+use netcert_testing::oracle::simulator::SimulatedDrive;
 use netcert_testing::oracle::turns::{self, Turn};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -95,7 +95,7 @@ fn every_vehicle_settles_on_the_closed_form_of_a_steady_circle() {
             let turn = Turn::new(radius, angle, 1.0, 1.0);
             let run = turns::drive(&vehicle, &turn, 0.0);
             let (guide, headings) = run.at(turn.span_at(angle));
-            let drive = Drive::new(&vehicle, &turn.path, 1);
+            let drive = SimulatedDrive::new(&vehicle, &turn.path, 1);
             let axle = turn.radius_of(drive.axles(guide, headings)[vehicle.units.len() - 1]);
             let miss = (axle - (radius * radius - k).sqrt()).abs();
             worst = worst.max(miss);
@@ -235,7 +235,7 @@ fn the_certifiers_motion_is_the_oracles() {
         let vehicle = fleet::vehicle(id);
         let turn = Turn::new(radius, angle, 2.0, 30.0);
         let run = turns::drive(&vehicle, &turn, 0.0);
-        let drive = Drive::new(&vehicle, &turn.path, 1);
+        let drive = SimulatedDrive::new(&vehicle, &turn.path, 1);
         for (k, poses) in sweep_path(&turn.plan(), &vehicle).iter().enumerate() {
             let (guide, headings) = run.at(turn.path.span_of_vertex(k));
             for (pose, axle) in poses.iter().zip(drive.axles(guide, headings)) {

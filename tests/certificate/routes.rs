@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use netcert_testing::demo::demo;
 use netcert_testing::extracts::extract;
-use netcert_testing::routing::{Driver, Region};
+use netcert_testing::routing::{TestDriver, TestRegion};
 
 use netcert::network::{EdgeNo, MovementKind};
 use netcert::osm::LonLat;
@@ -16,7 +16,7 @@ use netcert::route::{Measure, PartKind, Position, Question, Route};
 use netcert::stet::{self, Options};
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
-use netcert_testing::oracle::area_attack::Found;
+use netcert_testing::oracle::area_attack::AreaAttackOutcome;
 use netcert_testing::oracle::attack;
 use netcert_testing::oracle::claim::{self, Claim};
 use netcert_testing::oracle::draw::Draw;
@@ -68,7 +68,7 @@ struct Claims {
 }
 
 impl Attacked {
-    fn of(words: String, claim: &Claim, found: &Found) -> Self {
+    fn of(words: String, claim: &Claim, found: &AreaAttackOutcome) -> Self {
         let more = Claim { rsc_m: claim.rsc_m + INFLATED_M, plan: Vec::new(), ..*claim };
         Self {
             words,
@@ -86,7 +86,7 @@ fn turns(route: &Route) -> usize {
 }
 
 /// The middle of an edge's longest piece.
-fn middle(region: &Region, edge: EdgeNo) -> Position {
+fn middle(region: &TestRegion, edge: EdgeNo) -> Position {
     let line: Vec<_> = region.network.positions(&region.network.edges[edge.index()]).map(LonLat::degrees).collect();
     let length = |pair: &&[(f64, f64)]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
     let [a, b] = line.windows(2).max_by(|p, q| length(p).total_cmp(&length(q))).unwrap() else { unreachable!() };
@@ -94,7 +94,7 @@ fn middle(region: &Region, edge: EdgeNo) -> Position {
 }
 
 /// Both ends of a walk over safe edges and movements that begins with a safe turn.
-fn walk(region: &Region, driver: &Driver, draw: &mut Draw, first: usize) -> [EdgeNo; 2] {
+fn walk(region: &TestRegion, driver: &TestDriver, draw: &mut Draw, first: usize) -> [EdgeNo; 2] {
     let movements = region.movements.all();
     let allowed = |k: usize| {
         let movement = &movements[k];
@@ -122,7 +122,7 @@ fn walk(region: &Region, driver: &Driver, draw: &mut Draw, first: usize) -> [Edg
 }
 
 /// Certified routes between the ends of walks, no two over the same edges.
-fn routes(region: &Region, driver: &Driver, seed: u64, count: usize) -> Vec<Route> {
+fn routes(region: &TestRegion, driver: &TestDriver, seed: u64, count: usize) -> Vec<Route> {
     let mut draw = Draw(seed);
     let movements = region.movements.all();
     let safe = |k: &usize| {
@@ -152,7 +152,7 @@ fn routes(region: &Region, driver: &Driver, seed: u64, count: usize) -> Vec<Rout
 }
 
 /// Attacks a route's own certificate, and those of its parts with the plan that is made for the parts.
-fn attacked(driver: &Driver, route: &Route, name: &str, seed: u64) -> Claims {
+fn attacked(driver: &TestDriver, route: &Route, name: &str, seed: u64) -> Claims {
     let (vehicle, corridor) = (&driver.model.vehicle, &route.path.corridor);
     let mut claims = Claims::default();
     let name = format!("{name}, {:.0} m with {} turns", route.length_m, turns(route));
@@ -211,8 +211,8 @@ fn besieged(town: &Town) -> Option<(usize, Claims)> {
     let (name, about_deg, id, policy, count) = *town;
     let path = if name == "demo" { demo() } else { extract(name)? };
     let region = match about_deg {
-        Some(about_deg) => Region::read_middle(&path, policy, about_deg),
-        None => Region::read(&path, policy),
+        Some(about_deg) => TestRegion::read_middle(&path, policy, about_deg),
+        None => TestRegion::read(&path, policy),
     };
     let driver = region.driver(id);
     let routes = routes(&region, &driver, 0x0e07_e500, count);

@@ -3,11 +3,11 @@
 
 use netcert_testing::oracle;
 
-use netcert_testing::oracle::adversary::{Bounds, Target, kernel};
+use netcert_testing::oracle::adversary::{AdversaryBounds, PushTarget, kernel};
 use netcert_testing::oracle::draw::{self, Draw};
 use netcert_testing::oracle::path::{Path, V2, along, dot, left_of};
-use netcert_testing::oracle::road::{self, Road};
-use netcert_testing::oracle::simulator::{Disturbance, Drive, MAX_UNITS};
+use netcert_testing::oracle::road::{self, PreparedCorridor};
+use netcert_testing::oracle::simulator::{Disturbance, MAX_UNITS, SimulatedDrive};
 use netcert_testing::oracle::{draw::Bends, fleet};
 
 fn plan(bends: &Bends) -> Vec<V2> {
@@ -26,13 +26,13 @@ fn halving_the_step_moves_the_last_axle_by_less_than_two_micrometres() {
     for (id, radius) in [("US-WB109D", 20.0), ("AU-BTRIPLE36", 20.0), ("EU-EMS25-C", 12.5), ("AGV-TUG4", 12.5)] {
         let vehicle = fleet::vehicle(id);
         let path = Path::through(&plan(&loop_exit(radius)), 1.0, (0.0, 0.0), 30.0, 60.0);
-        let run = |n: usize| Drive::new(&vehicle, &path, n).whole(&Disturbance::none(path.spans() * n));
+        let run = |n: usize| SimulatedDrive::new(&vehicle, &path, n).whole(&Disturbance::none(path.spans() * n));
         let (coarse, fine) = (run(10), run(20));
         let worst = (0..=path.spans())
             .map(|k| {
-                let at = |run: &oracle::simulator::Run, n: usize| {
+                let at = |run: &oracle::simulator::SimulatedRun, n: usize| {
                     let (guide, headings) = run.at(k * n);
-                    Drive::new(&vehicle, &path, n).axles(guide, headings)[vehicle.units.len() - 1]
+                    SimulatedDrive::new(&vehicle, &path, n).axles(guide, headings)[vehicle.units.len() - 1]
                 };
                 let gap = along(at(&coarse, 10), -1.0, at(&fine, 20));
                 dot(gap, gap).sqrt()
@@ -49,14 +49,14 @@ fn halving_the_step_moves_the_last_axle_by_less_than_two_micrometres() {
 fn the_adversary_reaches_the_deviation_that_the_design_promises_on_the_straight() {
     let vehicle = fleet::vehicle("AU-ATRIPLE53");
     let path = Path::through(&plan(&vec![(300.0, 0.0)]), 1.0, (0.0, 0.0), 5.0, 5.0);
-    let drive = Drive::new(&vehicle, &path, 20);
+    let drive = SimulatedDrive::new(&vehicle, &path, 20);
     let none = Disturbance::none(drive.steps());
     let run = drive.whole(&none);
-    let target = Target { step: 20 * 295, unit: 5, ahead_m: -2.8, aside_m: 1.25, push: [0.0, 1.0] };
+    let target = PushTarget { step: 20 * 295, unit: 5, ahead_m: -2.8, aside_m: 1.25, push: [0.0, 1.0] };
     let kernel = kernel(&drive, &run, &none, &target, 20 * 290);
-    let bounds = Bounds { steer_m: 0.15, change_m: 0.05, slip: [0.2f64.to_radians(); MAX_UNITS] };
+    let bounds = AdversaryBounds { steer_m: 0.15, change_m: 0.05, slip: [0.2f64.to_radians(); MAX_UNITS] };
     let attacked = drive.whole(&kernel.attack(&bounds, drive.steps()));
-    let place = |run: &oracle::simulator::Run| {
+    let place = |run: &oracle::simulator::SimulatedRun| {
         let (guide, headings) = run.at(target.step);
         drive.body_point(guide, headings, target.unit, target.ahead_m, target.aside_m)
     };
@@ -70,10 +70,10 @@ fn the_adversary_reaches_the_deviation_that_the_design_promises_on_the_straight(
 fn the_kernel_is_the_derivative_of_the_simulator() {
     let vehicle = fleet::vehicle("EU-EMS25-C");
     let path = Path::through(&plan(&loop_exit(14.0)), 1.0, (0.0, 0.0), 30.0, 60.0);
-    let drive = Drive::new(&vehicle, &path, 10);
+    let drive = SimulatedDrive::new(&vehicle, &path, 10);
     let none = Disturbance::none(drive.steps());
     let run = drive.whole(&none);
-    let target = Target { step: 1050, unit: 2, ahead_m: 3.0, aside_m: -1.2, push: [0.6, 0.8] };
+    let target = PushTarget { step: 1050, unit: 2, ahead_m: 3.0, aside_m: -1.2, push: [0.6, 0.8] };
     let kernel = kernel(&drive, &run, &none, &target, 600);
     let place = |d: &Disturbance| {
         let run = drive.whole(d);
@@ -106,7 +106,7 @@ fn a_point_is_found_again_where_it_was_put() {
     for _ in 0..50 {
         let bends = draw::bends(&mut draw, 15.0, 200.0);
         let corridor = draw::corridor(&mut draw, &bends, 2.0, 6.0);
-        let road = Road::new(&corridor);
+        let road = PreparedCorridor::new(&corridor);
         for _ in 0..50 {
             let (s, lateral) = (draw.between(-5.0, road.length_m() + 5.0), draw.between(-6.0, 6.0));
             let (centre, tangent) = road.centre(s);

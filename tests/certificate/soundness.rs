@@ -6,7 +6,7 @@
 
 use netcert::corridor::Corridor;
 use netcert::vehicle::Vehicle;
-use netcert_testing::oracle::attack::{self, Attack, Outcome};
+use netcert_testing::oracle::attack::{self, Attack, AttackOutcome};
 use netcert_testing::oracle::claim::{Claim, certify};
 use netcert_testing::oracle::draw::{self, Bends, Draw};
 use netcert_testing::oracle::fleet;
@@ -29,7 +29,7 @@ struct Verdict {
     radius_m: f64,
     as_catalogued: bool,
     claim: Claim,
-    outcome: Outcome,
+    outcome: AttackOutcome,
 }
 
 impl Case {

@@ -44,7 +44,7 @@ fn refute(attack: impl Fn(&mut Draw) -> Option<Option<String>> + Sync) -> (usize
 
 /// The corridor's own centreline, four vertices per metre: a cubic through stations a metre apart is another curve.
 fn centreline(corridor: &Corridor, vehicle: &Vehicle) -> Path {
-    let road = road::Road::new(corridor);
+    let road = road::PreparedCorridor::new(corridor);
     let places: Vec<[f64; 2]> = (0..=4 * (corridor.len() - 1)).map(|k| road.centre(0.25 * k as f64).0).collect();
     let headings = (corridor.heading[0], corridor.heading[corridor.len() - 1]);
     Path::through(&places, 0.25, headings, 3.0 * vehicle.length_m, vehicle.length_m + 8.0)

@@ -5,11 +5,11 @@ use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Tube, certify, tubes};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
-use netcert_testing::oracle::adversary::{Bounds, Kernel, Target, kernel};
+use netcert_testing::oracle::adversary::{AdversaryBounds, Kernel, PushTarget, kernel};
 use netcert_testing::oracle::draw::{self, Bends, Draw};
 use netcert_testing::oracle::fleet;
 use netcert_testing::oracle::path::{Path, V2, direction, dot, left_of};
-use netcert_testing::oracle::simulator::{Disturbance, Drive, Run};
+use netcert_testing::oracle::simulator::{Disturbance, SimulatedDrive, SimulatedRun};
 use rayon::prelude::*;
 
 const STEPS: usize = 10;
@@ -70,10 +70,10 @@ fn cases(tolerance_m: f64, sway_deg: f64) -> Vec<Case> {
 }
 
 struct Bench<'a> {
-    drive: Drive<'a>,
-    nominal: Run,
+    drive: SimulatedDrive<'a>,
+    nominal: SimulatedRun,
     calm: Disturbance,
-    bounds: Bounds,
+    bounds: AdversaryBounds,
     tubes: Vec<Tube>,
 }
 
@@ -82,14 +82,14 @@ fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
     let options = Options { max_shift_m: 0.0, ..Options::default() };
     let certificate = certify(&case.corridor, &model, &options, &Stop::never()).unwrap().unwrap();
     assert!(certificate.result.shrink == 1.0, "{}: {:?}", case.name, certificate.result);
-    let drive = Drive::new(&case.vehicle, path, STEPS);
+    let drive = SimulatedDrive::new(&case.vehicle, path, STEPS);
     let calm = Disturbance::none(drive.steps());
     let nominal = drive.whole(&calm);
     let slip = std::array::from_fn(|i| case.vehicle.units.get(i).map_or(0.0, |u| u.sway_rad));
     let steer_m = case.vehicle.tracking_tolerance_m;
     let change_m = 2.0 * steer_m / SWING_M * case.corridor.spacing_m / STEPS as f64;
     let tubes = tubes(&case.corridor, &model, &certificate);
-    Bench { drive, nominal, calm, bounds: Bounds { steer_m, change_m, slip }, tubes }
+    Bench { drive, nominal, calm, bounds: AdversaryBounds { steer_m, change_m, slip }, tubes }
 }
 
 fn path(case: &Case) -> Path {
@@ -100,11 +100,11 @@ fn path(case: &Case) -> Path {
 }
 
 impl Bench<'_> {
-    fn target(&self, station: usize, unit: usize, side: f64) -> Target {
+    fn target(&self, station: usize, unit: usize, side: f64) -> PushTarget {
         let step = self.drive.path.span_of_vertex(station) * STEPS;
         // Across the axle's own nominal path, along the normal of its heading.
         let normal = left_of(direction(self.nominal.at(step).1[unit]));
-        Target { step, unit, ahead_m: 0.0, aside_m: 0.0, push: [side * normal[0], side * normal[1]] }
+        PushTarget { step, unit, ahead_m: 0.0, aside_m: 0.0, push: [side * normal[0], side * normal[1]] }
     }
 
     /// Largest movement of the linearised chain if the steer axle may jump. The plan's chord, κ ℓ²/8, is added to ε as
@@ -125,7 +125,7 @@ impl Bench<'_> {
         (5.0 * self.drive.vehicle.length_m) as usize * STEPS
     }
 
-    fn axle(&self, run: &Run, step: usize, unit: usize) -> V2 {
+    fn axle(&self, run: &SimulatedRun, step: usize, unit: usize) -> V2 {
         let (guide, headings) = run.at(step);
         self.drive.body_point(guide, headings, unit, 0.0, 0.0)
     }

@@ -1,7 +1,7 @@
 //! The checker compared with prover and oracle: no false alarms on random corridors, and no confirmation of what an
 //! adversary has refuted.
 
-use netcert::check::{Chain, Reading, SpanClaim, Subject, TOLERANCE_M, shift};
+use netcert::check::{Chain, SpanClaim, StationReading, Subject, TOLERANCE_M, shift};
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Planned, certify_spans};
 use netcert::vehicle::Vehicle;
@@ -58,7 +58,8 @@ fn what_the_prover_claims_is_confirmed_and_hardly_ever_a_decimetre_more() {
             let (vehicle, corridor) = random(index, radius);
             let (row, claims) = claims(&corridor, &vehicle);
             let chain = Chain::new(&vehicle);
-            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
+            let subject =
+                Subject::new(&chain, &corridor, shift(&row.plan.coefficients), StationReading::Strict).unwrap();
             let found = subject.check(&claims);
             let more = |claim: &SpanClaim| SpanClaim { rsc_m: claim.rsc_m.map(|m| m + 0.1), ..claim.clone() };
             let more: Vec<SpanClaim> = claims.iter().map(more).collect();
@@ -97,7 +98,8 @@ fn kinked_widths_are_read_on_the_careful_side() {
             }
             let (row, claims) = claims(&corridor, &vehicle);
             let chain = Chain::new(&vehicle);
-            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
+            let subject =
+                Subject::new(&chain, &corridor, shift(&row.plan.coefficients), StationReading::Strict).unwrap();
             for (claim, found) in claims.iter().zip(subject.check(&claims)) {
                 assert!(found.is_empty(), "{index}: {}: {claim:?}: {found:?}", vehicle.id);
             }
@@ -120,7 +122,8 @@ fn no_claim_above_what_an_adversary_reached_is_confirmed() {
             let whole = 0..corridor.len();
             let row = planned(&corridor, &vehicle, std::slice::from_ref(&whole));
             let chain = Chain::new(&vehicle);
-            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), Reading::Strict).unwrap();
+            let subject =
+                Subject::new(&chain, &corridor, shift(&row.plan.coefficients), StationReading::Strict).unwrap();
             // The adversary's own arithmetic is accurate to 0.02 mm (`soundness.rs`).
             let refuted = outcome.least.clearance_m + 2e-5 + TOLERANCE_M;
             let above = SpanClaim {

@@ -2,7 +2,7 @@
 //! changed and newly sealed file is refuted.
 
 use netcert_testing::mutations::{COLUMNS, add, each, leeway, other_side, said, scale, survives};
-use netcert_testing::oracle::files::{Case, case};
+use netcert_testing::oracle::files::{OracleCase, case};
 use netcert_testing::thorough;
 
 use netcert::check::{Outcome, certificate};
@@ -17,7 +17,7 @@ fn cases() -> u64 {
     thorough::cases(40, 400)
 }
 
-fn written(case: &Case) -> Value {
+fn written(case: &OracleCase) -> Value {
     let model = Model::new(&case.vehicle).unwrap();
     let made = certify(&case.given.corridor, &model, &case.options, &Stop::never()).unwrap().unwrap();
     netcert::certificate::json(&case.given, &model, &made, &case.options).unwrap()

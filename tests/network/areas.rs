@@ -12,7 +12,7 @@ use netcert::turns::{KerbSource, LengthClass, TurnCorridors, turn_corridors};
 
 use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, offset, somewhere};
 use netcert_testing::extracts::extract;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 /// Two roads of 7.5 m. A lorry from E to C turns round the corner in the south-east.
 fn cross() -> AsciiMap {
@@ -40,13 +40,17 @@ fn square(half_m: f64) -> Vec<[f64; 2]> {
     vec![[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]]
 }
 
-fn corner(drawn: &Drawn) -> TurnCorridors {
+fn corner(drawn: &DrawnNetwork) -> TurnCorridors {
     let turn = drawn.turn("EBC");
     turn_corridors(&drawn.network, turn.movement, Policy::Carriageway, &drawn.params, LengthClass::Short).unwrap()
 }
 
 fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
-    Drawn::new(map, TrafficSide::Right, kerb_m).best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
+    DrawnNetwork::new(map, TrafficSide::Right, kerb_m)
+        .best("EBC", Policy::Carriageway, "EU-SEMI16.5")
+        .unwrap()
+        .rsc_m
+        .unwrap()
 }
 
 #[test]
@@ -58,7 +62,7 @@ fn a_mapped_surface_stands_for_the_kerb() {
     // As mapped, and no rounder, whatever is assumed elsewhere.
     let tight = narrow().area('B', &square(4.0), SURFACE);
     assert!((rsc_m(&tight, 15.0) - sharp).abs() < 0.2 && rsc_m(&narrow(), 15.0) > sharp + 0.5);
-    let drawn = Drawn::new(&tight, TrafficSide::Right, 15.0);
+    let drawn = DrawnNetwork::new(&tight, TrafficSide::Right, 15.0);
     for turn in drawn.facts() {
         assert_eq!((turn.kerb_radius_m, turn.kerb_source), (None, Some(KerbSource::Mapped)));
     }
@@ -69,8 +73,8 @@ fn a_mapped_surface_stands_for_the_kerb() {
 fn nothing_counts_that_neither_a_road_nor_the_surface_covers() {
     // Cut off from 9 m east on in the south, so that the corner is lopsided.
     let ring = [[-20.0, -20.0], [9.0, -20.0], [9.0, -6.0], [20.0, -6.0], [20.0, 20.0], [-20.0, 20.0]];
-    let bare = corner(&Drawn::new(&cross(), TrafficSide::Right, 0.0));
-    let mapped = corner(&Drawn::new(&cross().area('B', &ring, SURFACE), TrafficSide::Right, 0.0));
+    let bare = corner(&DrawnNetwork::new(&cross(), TrafficSide::Right, 0.0));
+    let mapped = corner(&DrawnNetwork::new(&cross().area('B', &ring, SURFACE), TrafficSide::Right, 0.0));
     let added = mapped.area.difference(&bare.area);
     let node = node_of(&mapped);
     // All corners of the crossing count, as far as the surface covers them. The corner of this turn:
@@ -128,7 +132,7 @@ fn islands_on_a_surface_are_no_road() {
 
 #[test]
 fn a_surface_counts_for_the_roads_of_its_class_at_the_nodes_inside_it() {
-    let source = |map: &AsciiMap| Drawn::new(map, TrafficSide::Right, 6.0).turn("EBC").kerb_source;
+    let source = |map: &AsciiMap| DrawnNetwork::new(map, TrafficSide::Right, 6.0).turn("EBC").kerb_source;
     assert_eq!(source(&cross()), Some(KerbSource::Assumed));
     assert_eq!(source(&cross().area('B', &square(10.0), "area:highway=secondary_link")), Some(KerbSource::Mapped));
     assert_eq!(source(&cross().area('B', &square(10.0), "area:highway=service")), Some(KerbSource::Assumed));

@@ -5,7 +5,7 @@
 
 use netcert_testing::ascii_map::{self, AsciiMap};
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 use netcert::network::MovementKind;
 use netcert::osm::facts::{Policy, TrafficSide};
@@ -22,16 +22,16 @@ fn onwards([x, y]: [f64; 2], length_m: f64, degrees: f64) -> [f64; 2] {
 }
 
 /// The road A–b–C, which turns left at b by some degrees. With `street`, a street meets it there from the south.
-fn bent(degrees: f64, street: bool) -> Drawn {
+fn bent(degrees: f64, street: bool) -> DrawnNetwork {
     let places =
         [('A', [-200.0, 0.0]), ('b', [0.0, 0.0]), ('C', onwards([0.0; 2], 200.0, degrees)), ('S', [0.0, -150.0])];
     let map = AsciiMap::placed(if street { &places } else { &places[..3] }).way("AbC", ROAD);
     let map = if street { map.way("Sb", "highway=residential width=6") } else { map };
-    Drawn::new(&map, TrafficSide::Right, 4.0)
+    DrawnNetwork::new(&map, TrafficSide::Right, 4.0)
 }
 
 /// The road A–b–c–D with streets at b and c. It turns left at b and right at c, `apart_m` behind it.
-fn jogged(degrees: f64, apart_m: f64) -> Drawn {
+fn jogged(degrees: f64, apart_m: f64) -> DrawnNetwork {
     let c = onwards([0.0; 2], apart_m, degrees);
     let places = [
         ('A', [-200.0, 0.0]),
@@ -43,11 +43,11 @@ fn jogged(degrees: f64, apart_m: f64) -> Drawn {
     ];
     let streets = "highway=residential width=6";
     let map = AsciiMap::placed(&places).way("AbcD", ROAD).way("Sb", streets).way("cN", streets);
-    Drawn::new(&map, TrafficSide::Right, 4.0)
+    DrawnNetwork::new(&map, TrafficSide::Right, 4.0)
 }
 
 /// How the road goes on from one edge into another.
-fn kind(drawn: &Drawn, from: &str, to: &str) -> MovementKind {
+fn kind(drawn: &DrawnNetwork, from: &str, to: &str) -> MovementKind {
     let edge = |ends| ascii_map::edge(&drawn.network, ends);
     drawn.network.movements().between(edge(from), edge(to)).unwrap().kind
 }

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
-use netcert::network::{Cell, EdgeNo, Network, build};
+use netcert::network::{EdgeNo, GridCell, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, NodeId, NodeTable, Way};
@@ -144,13 +144,13 @@ fn complete_ways(extract: &Extract, here: impl Fn(LonLat) -> bool) -> Extract {
 }
 
 /// The cells of an extract's nodes on ways.
-fn cells_of(extract: &Extract) -> BTreeSet<Cell> {
-    extract.refs.iter().filter_map(|&id| extract.nodes.place(id)).map(Cell::of).collect()
+fn cells_of(extract: &Extract) -> BTreeSet<GridCell> {
+    extract.refs.iter().filter_map(|&id| extract.nodes.place(id)).map(GridCell::of).collect()
 }
 
 /// Whether a place is in one of these cells, beside one, or within the halo around those.
-fn near(own: &BTreeSet<Cell>, place: LonLat) -> bool {
-    let cell = |east: f64, north: f64| Cell::of(offset(place, east * HALO_M, north * HALO_M));
+fn near(own: &BTreeSet<GridCell>, place: LonLat) -> bool {
+    let cell = |east: f64, north: f64| GridCell::of(offset(place, east * HALO_M, north * HALO_M));
     let around = [-1.0, 0.0, 1.0].into_iter().flat_map(|x| [-1.0, 0.0, 1.0].map(|y| cell(x, y)));
     around.into_iter().any(|at| own.iter().any(|own| own.x.abs_diff(at.x) <= 1 && own.y.abs_diff(at.y) <= 1))
 }
@@ -174,7 +174,7 @@ struct Owned {
     turn_certificates: BTreeMap<i64, String>,
 }
 
-fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Owned {
+fn owned(network: &Network, own: &BTreeSet<GridCell>, vehicle: Option<&Model>) -> Owned {
     let mut owned = Owned::default();
     let id = |edge: EdgeNo| network.edges[edge.index()].id;
     let mut stroke_of = BTreeMap::new();
@@ -247,11 +247,11 @@ fn owned(network: &Network, own: &BTreeSet<Cell>, vehicle: Option<&Model>) -> Ow
 }
 
 /// The cells of an extract in `parts` × `parts` groups of columns and rows.
-fn divided(all: &BTreeSet<Cell>, parts: u32) -> Vec<BTreeSet<Cell>> {
-    let range = |of: fn(&Cell) -> u32| (all.iter().map(of).min().unwrap(), all.iter().map(of).max().unwrap() + 1);
+fn divided(all: &BTreeSet<GridCell>, parts: u32) -> Vec<BTreeSet<GridCell>> {
+    let range = |of: fn(&GridCell) -> u32| (all.iter().map(of).min().unwrap(), all.iter().map(of).max().unwrap() + 1);
     let (columns, rows) = (range(|c| c.x), range(|c| c.y));
     let part = |at: u32, (from, to): (u32, u32)| (at - from) * parts / (to - from);
-    let mut groups: BTreeMap<(u32, u32), BTreeSet<Cell>> = BTreeMap::new();
+    let mut groups: BTreeMap<(u32, u32), BTreeSet<GridCell>> = BTreeMap::new();
     for &cell in all {
         groups.entry((part(cell.y, rows), part(cell.x, columns))).or_default().insert(cell);
     }
@@ -314,14 +314,14 @@ fn the_halo_is_needed() {
     let extract = drawn(2);
     let whole = network(extract.clone());
     let differs = divided(&cells_of(&extract), 3).into_iter().filter(|own| {
-        let part = network(complete_ways(&extract, |place| own.contains(&Cell::of(place))));
+        let part = network(complete_ways(&extract, |place| own.contains(&GridCell::of(place))));
         owned(&whole, own, None) != owned(&part, own, None)
     });
     assert!(differs.count() > 0);
 }
 
 /// What some cells own of all that is said of a network.
-fn owned_of(network: &Network, all: &Owned, own: &BTreeSet<Cell>) -> Owned {
+fn owned_of(network: &Network, all: &Owned, own: &BTreeSet<GridCell>) -> Owned {
     let mine = owned(network, own, None);
     let of = |from: &BTreeMap<i64, String>, ids: &BTreeMap<i64, String>| {
         ids.keys().filter_map(|id| Some((*id, from.get(id)?.clone()))).collect()

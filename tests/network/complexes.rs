@@ -5,8 +5,8 @@
 
 use netcert_testing::ascii_map::{self, AsciiMap, id_of};
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
-use netcert_testing::routing::Region;
+use netcert_testing::junctions::DrawnNetwork;
+use netcert_testing::routing::TestRegion;
 
 use geo::{BooleanOps as _, BoundingRect as _, Distance as _, Euclidean};
 use netcert::network::{EdgeNo, PassageKind};
@@ -36,12 +36,12 @@ fn staggered(apart_m: f64, road: &str, streets: &str) -> AsciiMap {
 const ROAD: &str = "highway=secondary width=9";
 const STREETS: &str = "highway=tertiary width=8";
 
-fn drawn(map: &AsciiMap) -> Drawn {
-    Drawn::new(map, TrafficSide::Right, 4.0)
+fn drawn(map: &AsciiMap) -> DrawnNetwork {
+    DrawnNetwork::new(map, TrafficSide::Right, 4.0)
 }
 
 /// The ends of all passages, such as `NS`.
-fn names(drawn: &Drawn) -> Vec<String> {
+fn names(drawn: &DrawnNetwork) -> Vec<String> {
     let node = |id: NodeId| u32::try_from(id.get()).ok().and_then(char::from_u32).unwrap();
     let edge = |edge: EdgeNo| &drawn.network.edges[edge.index()];
     let name = |from: EdgeNo, to: EdgeNo| [node(edge(from).from_node), node(edge(to).to_node)].iter().collect();
@@ -113,7 +113,7 @@ fn a_lorry_gets_across_where_it_cannot_turn_in() {
 
 #[test]
 fn a_route_leads_across_a_complex_as_one_movement() {
-    let mut region = Region::of(staggered(4.0, ROAD, STREETS).extract(), Policy::Carriageway);
+    let mut region = TestRegion::of(staggered(4.0, ROAD, STREETS).extract(), Policy::Carriageway);
     region.kerbs = Kerbs::everywhere(4.0);
     let driver = region.driver("EU-SEMI16.5");
     let edge = |ends: &str| ascii_map::edge(&region.network, ends);

@@ -9,18 +9,18 @@ use netcert::osm::facts::Policy;
 use netcert::route::*;
 use netcert::stop::Stop;
 use netcert::turns::Kerbs;
-use routing::Region;
+use routing::TestRegion;
 
 const TAGS: &str = "highway=tertiary width=7";
 
-fn region(map: &AsciiMap, kerb_m: f64) -> Region {
-    let mut region = Region::of(map.extract(), Policy::Carriageway);
+fn region(map: &AsciiMap, kerb_m: f64) -> TestRegion {
+    let mut region = TestRegion::of(map.extract(), Policy::Carriageway);
     region.kerbs = Kerbs::everywhere(kerb_m);
     region
 }
 
 /// The middle of the first piece of an edge.
-fn on(region: &Region, ends: &str) -> Position {
+fn on(region: &TestRegion, ends: &str) -> Position {
     let edge = ascii_map::edge(&region.network, ends).index();
     let line: Vec<_> = region.network.positions(&region.network.edges[edge]).collect();
     let (a, b) = (line[0].degrees(), line[1].degrees());
@@ -32,7 +32,7 @@ struct Asked {
     under: Result<Conditional, Hopeless>,
 }
 
-fn ask(region: &Region, vehicle: &str, [from, to]: [&str; 2]) -> Asked {
+fn ask(region: &TestRegion, vehicle: &str, [from, to]: [&str; 2]) -> Asked {
     let driver = region.driver(vehicle);
     let mut planner = region.planner(&driver, Measure::Distance);
     let places = vec![on(region, from), on(region, to)];

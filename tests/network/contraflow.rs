@@ -11,12 +11,12 @@ use netcert::verdict::{ForbiddenReason, Verdict};
 
 use netcert_testing::ascii_map::{AsciiMap, edge};
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 const POLICIES: [Policy; 3] = [Policy::Lane, Policy::Direction, Policy::Carriageway];
 
 /// A two-way road that goes on as a one-way street, with side roads where they meet and farther on.
-fn street(tags: &str) -> Drawn {
+fn street(tags: &str) -> DrawnNetwork {
     let map = AsciiMap::placed(&[
         ('A', [-200.0, 0.0]),
         ('B', [0.0, 0.0]),
@@ -29,7 +29,7 @@ fn street(tags: &str) -> Drawn {
     .way("BCD", &format!("highway=secondary oneway=yes {tags}"))
     .way("BE", "highway=residential")
     .way("CF", "highway=residential");
-    Drawn::new(&map, TrafficSide::Right, 6.0)
+    DrawnNetwork::new(&map, TrafficSide::Right, 6.0)
 }
 
 /// The widths along the stroke of an edge.
@@ -59,7 +59,7 @@ fn a_street_is_no_wider_where_buses_may_come_against_it() {
 
 #[test]
 fn only_buses_may_drive_against_it_and_no_width_is_known_there() {
-    let Drawn { network, .. } = street("oneway:bus=no");
+    let DrawnNetwork { network, .. } = street("oneway:bus=no");
     let models = ["EU-SEMI16.5", "BUS-ART18-EU"].map(|id| Model::new(&catalogued(id)).unwrap());
     let settings = Settings { needs: Needs::Off, ..Settings::default() };
     let job = Job { network: &network, models: &models, settings: &settings };

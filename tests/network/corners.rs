@@ -14,7 +14,7 @@ use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::Verdict;
 use netcert_testing::oracle::whole;
-use routing::Region;
+use routing::TestRegion;
 
 const ROAD: &str = "highway=residential";
 
@@ -200,13 +200,13 @@ fn bent(tags: &str) -> AsciiMap {
     AsciiMap::drawn(50.0, CORNER).way("ABC", tags)
 }
 
-fn region(map: &AsciiMap) -> Region {
-    let mut region = Region::of(map.extract(), Policy::Carriageway);
+fn region(map: &AsciiMap) -> TestRegion {
+    let mut region = TestRegion::of(map.extract(), Policy::Carriageway);
     region.kerbs = Kerbs::everywhere(9.0);
     region
 }
 
-fn route(region: &Region, driver: &routing::Driver, ends: [&str; 2]) -> Answer {
+fn route(region: &TestRegion, driver: &routing::TestDriver, ends: [&str; 2]) -> Answer {
     let middle = |ends: &str| {
         let line: Vec<_> =
             region.network.positions(&region.network.edges[edge(&region.network, ends).index()]).collect();

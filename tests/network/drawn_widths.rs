@@ -11,7 +11,7 @@ use netcert::watch;
 
 use netcert_testing::ascii_map::AsciiMap;
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 /// Networks that are drawn, and polls of the guard that each certificate of an edge or turn may take. Measured: 1,950 at most.
 const NETWORKS: u64 = 24;
@@ -77,7 +77,7 @@ fn networks_of_any_widths_are_certified_with_bounded_work() {
     let mut draw = Draw(0x2545_f491_4f6c_dd1d);
     let mut safe = 0;
     for number in 0..NETWORKS {
-        let drawn = Drawn::new(
+        let drawn = DrawnNetwork::new(
             &draw.network(),
             if draw.below(2) == 0 { TrafficSide::Left } else { TrafficSide::Right },
             draw.metres(300, 1200),

@@ -14,7 +14,7 @@ use netcert::turns::{LengthClass, TurnCorridors, TurnNo};
 use netcert::verdict::{UnsafeReason, Verdict};
 
 use netcert_testing::ascii_map::{AsciiMap, built, id_of, no_sections, somewhere};
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 const LORRY: &str = "EU-SEMI16.5";
 const ISLAND: &str = "traffic_calming=island";
@@ -38,19 +38,19 @@ fn cross() -> AsciiMap {
     .way("DBE", "highway=secondary width=7.3")
 }
 
-fn with(island: &[[f64; 2]]) -> Drawn {
-    Drawn::new(&cross().area('B', island, ISLAND), TrafficSide::Right, KERB_M)
+fn with(island: &[[f64; 2]]) -> DrawnNetwork {
+    DrawnNetwork::new(&cross().area('B', island, ISLAND), TrafficSide::Right, KERB_M)
 }
 
-fn made(drawn: &Drawn) -> TurnCorridors {
+fn made(drawn: &DrawnNetwork) -> TurnCorridors {
     drawn.corridors("EBC", Policy::Carriageway, LengthClass::Short).unwrap()
 }
 
-fn rsc_m(drawn: &Drawn) -> Option<f64> {
+fn rsc_m(drawn: &DrawnNetwork) -> Option<f64> {
     drawn.best("EBC", Policy::Carriageway, LORRY)?.rsc_m
 }
 
-fn verdicts(drawn: &Drawn) -> Vec<Verdict> {
+fn verdicts(drawn: &DrawnNetwork) -> Vec<Verdict> {
     let edges = vec![Verdict::Safe; drawn.network.edges.len()];
     let (rows, _) = drawn.certified(&[LORRY], &edges, Policy::Carriageway, 1);
     let by_turn: BTreeMap<TurnNo, TurnCertificate> = rows.into_iter().map(|(_, row)| (row.turn, row)).collect();
@@ -81,7 +81,7 @@ fn stored(network: &Network) -> Network {
 
 #[test]
 fn an_island_closes_a_turn_before_and_after_a_reload() {
-    let free = Drawn::new(&cross(), TrafficSide::Right, KERB_M);
+    let free = DrawnNetwork::new(&cross(), TrafficSide::Right, KERB_M);
     let closed = with(&IN_THE_WAY);
     assert!(
         rsc_m(&free).unwrap() > 0.3 && rsc_m(&closed).unwrap_or(-1.0) < 0.0,
@@ -92,7 +92,7 @@ fn an_island_closes_a_turn_before_and_after_a_reload() {
     let area = made(&free).area.difference(&made(&closed).area);
     assert!((area.unsigned_area() - 36.5).abs() < 1.0, "{}", area.unsigned_area());
     assert_eq!((made(&free).islands.len(), made(&closed).islands.len()), (0, 1));
-    let again = Drawn { network: stored(&closed.network), params: closed.params.clone() };
+    let again = DrawnNetwork { network: stored(&closed.network), params: closed.params.clone() };
     assert_eq!(again.network.areas, closed.network.areas);
     assert_eq!((made(&again), rsc_m(&again)), (made(&closed), rsc_m(&closed)));
     assert!(verdicts(&free).contains(&Verdict::Safe));
@@ -103,7 +103,7 @@ fn an_island_closes_a_turn_before_and_after_a_reload() {
 fn an_island_beside_the_road_changes_nothing() {
     let beside = with(&[[14.0, -14.0], [18.0, -14.0], [18.0, -10.0], [14.0, -10.0]]);
     assert_eq!(beside.network.areas.all().len(), 1);
-    assert_eq!(made(&beside), made(&Drawn::new(&cross(), TrafficSide::Right, KERB_M)));
+    assert_eq!(made(&beside), made(&DrawnNetwork::new(&cross(), TrafficSide::Right, KERB_M)));
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn an_island_at_the_end_of_a_road_is_not_undone_by_the_road_beyond() {
     // The areas near the end of the way out have the straight road beyond it beside them.
     let half = |end_m: f64| [[end_m - 1.0, -4.0], [end_m, -4.0], [end_m, 4.0], [end_m - 1.0, 4.0]];
     let short = |map: AsciiMap| {
-        Drawn::new(
+        DrawnNetwork::new(
             &map.way("ABC", "highway=secondary width=7.3").way("DBE", "highway=secondary width=7.3"),
             TrafficSide::Right,
             KERB_M,
@@ -181,7 +181,7 @@ fn a_crossing_of_hundreds_of_nodes_has_an_area_of_a_few() {
     for (a, b) in on.iter().zip(&off) {
         map = map.way(&format!("{a}{b}"), road);
     }
-    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, KERB_M);
     let turn = drawn.facts().into_iter().find(|turn| {
         let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge.index()]);
         from.from_node == id_of('E') && to.to_node == id_of(on[101])
@@ -207,7 +207,7 @@ fn a_node_of_forty_roads_has_turns_without_its_other_roads() {
     let map = ends
         .iter()
         .fold(AsciiMap::placed(&nodes), |map, end| map.way(&format!("B{end}"), "highway=secondary width=7.3"));
-    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, KERB_M);
     let area =
         |name: String| drawn.corridors(&name, Policy::Carriageway, LengthClass::Short).unwrap().area.unsigned_area();
     let across = area(format!("{}B{}", ends[0], ends[12]));
@@ -218,7 +218,7 @@ fn a_node_of_forty_roads_has_turns_without_its_other_roads() {
 #[test]
 fn hundreds_of_equal_islands_are_one() {
     let map = (0..300).fold(cross(), |map, _| map.area('B', &IN_THE_WAY, ISLAND));
-    let drawn = Drawn::new(&map, TrafficSide::Right, KERB_M);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, KERB_M);
     let (one, all) = (made(&with(&IN_THE_WAY)).area, made(&drawn).area);
     assert_eq!(drawn.network.areas.all().len(), 300);
     assert!((one.unsigned_area() - all.unsigned_area()).abs() < 1e-3);

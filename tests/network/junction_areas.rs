@@ -9,7 +9,7 @@ use netcert::osm::facts::{Policy, TrafficSide};
 use netcert::turns::{JunctionArea, KerbSource, LengthClass, junction_areas, junction_nodes};
 
 use netcert_testing::ascii_map::{AsciiMap, id_of};
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 fn cross(width: &str) -> AsciiMap {
     AsciiMap::drawn(
@@ -26,7 +26,7 @@ fn cross(width: &str) -> AsciiMap {
     .way("DBE", &format!("highway=secondary {width}"))
 }
 
-fn areas(drawn: &Drawn) -> Vec<JunctionArea> {
+fn areas(drawn: &DrawnNetwork) -> Vec<JunctionArea> {
     junction_areas(&drawn.network, &junction_nodes(&drawn.network, &drawn.facts()), &drawn.params)
 }
 
@@ -45,7 +45,7 @@ fn metres(area: &JunctionArea) -> MultiPolygon {
 #[test]
 fn a_crossing_is_two_roads_and_four_rounded_corners() {
     for (width_m, kerb_m) in [(7.3, 6.0), (12.0, 10.0), (6.0, 0.0)] {
-        let drawn = Drawn::new(&cross(&format!("width={width_m}")), TrafficSide::Right, kerb_m);
+        let drawn = DrawnNetwork::new(&cross(&format!("width={width_m}")), TrafficSide::Right, kerb_m);
         let [area] = &areas(&drawn)[..] else { panic!("one junction") };
         assert_eq!((area.node, area.roads, area.kerb_source), (id_of('B'), 4, Some(KerbSource::Assumed)));
         // The mouths reach 15 m.
@@ -63,7 +63,7 @@ fn a_crossing_is_two_roads_and_four_rounded_corners() {
 #[test]
 fn what_any_turn_may_use_near_the_node_lies_in_the_junctions_area() {
     for kerb_m in [2.0, 6.0, 9.0] {
-        let drawn = Drawn::new(&cross("width=8"), TrafficSide::Right, kerb_m);
+        let drawn = DrawnNetwork::new(&cross("width=8"), TrafficSide::Right, kerb_m);
         let [area] = &areas(&drawn)[..] else { panic!("one junction") };
         let mut edges = drawn.network.edges.iter().filter(|edge| edge.from_node == area.node);
         let node = drawn.network.positions(edges.next().unwrap()).next().unwrap();
@@ -82,7 +82,7 @@ fn what_any_turn_may_use_near_the_node_lies_in_the_junctions_area() {
 #[test]
 fn an_island_is_a_hole_and_a_mapped_surface_gives_the_corners() {
     let island = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let with = |map: AsciiMap| Drawn::new(&map, TrafficSide::Right, 6.0);
+    let with = |map: AsciiMap| DrawnNetwork::new(&map, TrafficSide::Right, 6.0);
     let [whole] = &areas(&with(cross("width=9")))[..] else { panic!() };
     let [holed] = &areas(&with(cross("width=9").area('B', &island, "traffic_calming=island")))[..] else { panic!() };
     assert_eq!((holed.polygons.len(), holed.polygons[0].len()), (1, 2));
@@ -99,7 +99,7 @@ fn a_bend_has_two_mouths_and_an_inner_corner() {
     let bend = AsciiMap::placed(&[('A', [-80.0, 0.0]), ('B', [0.0, 0.0]), ('C', [0.0, 80.0])])
         .way("AB", "highway=secondary width=7")
         .way("BC", "highway=secondary width=7");
-    let drawn = Drawn::new(&bend, TrafficSide::Right, 6.0);
+    let drawn = DrawnNetwork::new(&bend, TrafficSide::Right, 6.0);
     let [area] = &areas(&drawn)[..] else { panic!("one junction") };
     assert_eq!((area.node, area.roads), (id_of('B'), 2));
     // Two mouths of 15 m share a quarter of a square; the corner is rounded.
@@ -125,7 +125,7 @@ fn areas_are_the_same_for_any_number_of_threads_and_in_order_of_nodes() {
     .way("FAH", "highway=tertiary width=7")
     .way("DBE", "highway=tertiary width=7")
     .way("GCI", "highway=tertiary width=7");
-    let drawn = Drawn::new(&map, TrafficSide::Left, 6.0);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Left, 6.0);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| areas(&drawn))

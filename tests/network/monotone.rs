@@ -9,11 +9,11 @@ use netcert::verdict::Verdict;
 
 use netcert_testing::ascii_map::AsciiMap;
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 use netcert_testing::thorough::cases;
 
 /// A crossing of two roads that meet at an angle, in degrees.
-fn crossing(angle_deg: f64, kerb_m: f64, classes: [&str; 2]) -> Drawn {
+fn crossing(angle_deg: f64, kerb_m: f64, classes: [&str; 2]) -> DrawnNetwork {
     let (sin, cos) = angle_deg.to_radians().sin_cos();
     let far = 160.0;
     let map = AsciiMap::placed(&[
@@ -25,11 +25,11 @@ fn crossing(angle_deg: f64, kerb_m: f64, classes: [&str; 2]) -> Drawn {
     ])
     .way("ABC", classes[0])
     .way("EBD", classes[1]);
-    Drawn::new(&map, TrafficSide::Right, kerb_m)
+    DrawnNetwork::new(&map, TrafficSide::Right, kerb_m)
 }
 
 /// For each turn: the RSC where it is safe, with all roads measured at the widths given.
-fn turns(drawn: &Drawn, vehicle: &str, policy: Policy, widths_m: [f64; 2]) -> Vec<Option<f64>> {
+fn turns(drawn: &DrawnNetwork, vehicle: &str, policy: Policy, widths_m: [f64; 2]) -> Vec<Option<f64>> {
     let mut network = drawn.network.clone();
     for edge in drawn.network.edges.clone() {
         let width_m = widths_m[usize::from(network.road(&edge).way_id == 2)];
@@ -52,7 +52,12 @@ fn turns(drawn: &Drawn, vehicle: &str, policy: Policy, widths_m: [f64; 2]) -> Ve
 }
 
 /// Turns that are safe at some width and not at the next larger one, of all that are safe and have a larger width to be tried.
-fn lost(drawn: &Drawn, vehicle: &str, policy: Policy, widths_m: impl Iterator<Item = f64>) -> (Vec<String>, usize) {
+fn lost(
+    drawn: &DrawnNetwork,
+    vehicle: &str,
+    policy: Policy,
+    widths_m: impl Iterator<Item = f64>,
+) -> (Vec<String>, usize) {
     let (mut lost, mut all) = (Vec::new(), 0);
     let mut before: Option<Vec<Option<f64>>> = None;
     for width_m in widths_m {

@@ -16,7 +16,7 @@ use netcert::verdict::{UnknownReason, UnsafeReason, Verdict};
 
 use netcert_testing::catalogue::catalogued;
 use netcert_testing::extracts;
-use netcert_testing::routing::Region;
+use netcert_testing::routing::TestRegion;
 use netcert_testing::thorough::cases;
 
 /// The vehicles whose needs on the drawn region are looked at.
@@ -39,7 +39,7 @@ fn certified(network: &Network, model: &Model, settings: &Settings) -> Vec<EdgeC
 /// the roads beside it, so an edge that is not safe then is asked once more with its own stroke alone. Returns how many needs there were,
 /// how many held, and how many edges have none.
 fn widened(path: &Path, vehicle: &str, policy: Policy) -> (usize, usize, usize) {
-    let region = Region::read(path, policy);
+    let region = TestRegion::read(path, policy);
     let model = Model::new(&catalogued(vehicle)).unwrap();
     let settings = Settings { needs: Needs::Edges, ..region.settings.clone() };
     let mut network = region.network.clone();
@@ -119,7 +119,7 @@ fn an_edge_with_the_width_that_it_needs_is_safe() {
 fn an_estimated_need_is_seldom_far_from_the_certified_one() {
     let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf");
     for vehicle in vehicles() {
-        let region = Region::read(&demo, Policy::Lane);
+        let region = TestRegion::read(&demo, Policy::Lane);
         let model = Model::new(&catalogued(vehicle)).unwrap();
         let [estimated, searched] = [Needs::Estimated, Needs::Edges]
             .map(|needs| certified(&region.network, &model, &Settings { needs, ..region.settings.clone() }));
@@ -153,7 +153,7 @@ fn an_estimated_need_is_seldom_far_from_the_certified_one() {
 #[test]
 fn a_turn_with_the_kerb_or_the_width_that_it_needs_is_safe() {
     let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf");
-    let region = Region::read(&demo, Policy::Carriageway);
+    let region = TestRegion::read(&demo, Policy::Carriageway);
     let driver = region.driver("AU-SEMI19");
     let (settings, model) = (&driver.permits.settings, &driver.model);
     let mut strokes = region.strokes();

@@ -6,7 +6,7 @@ use std::{fs, path::PathBuf, sync::Mutex};
 use netcert::osm::{
     Extract, LonLat,
     pbf::{
-        Progress, ReadError, Stage, read_extract,
+        Progress, ReadError, ReadingStage, read_extract,
         write::{self, NodeRecord, WayRecord},
     },
 };
@@ -175,7 +175,7 @@ fn progress_goes_through_the_stages_and_ends_at_the_end() {
     let seen: Mutex<Vec<Progress>> = Mutex::default();
     read_extract(&path, &|progress| seen.lock().unwrap().push(progress)).unwrap();
     let seen = seen.into_inner().unwrap();
-    for stage in [Stage::Check, Stage::Ways, Stage::Nodes] {
+    for stage in [ReadingStage::Check, ReadingStage::Ways, ReadingStage::Nodes] {
         let last = seen.iter().rfind(|progress| progress.stage == stage).unwrap();
         assert_eq!(last.done, last.total, "{stage:?}");
     }

@@ -5,7 +5,7 @@
 use netcert::network::EdgeNo;
 use netcert_testing::ascii_map::{self, AsciiMap, id_of};
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 use netcert_testing::roundabout::{RING, map};
 use netcert_testing::thorough::cases;
 
@@ -22,9 +22,9 @@ use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::fight;
 
-fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Drawn {
+fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> DrawnNetwork {
     let tags = |width: f64| format!("highway=secondary width={width}");
-    Drawn::new(&map(radius_m, &tags(ring_m), &tags(arm_m), TrafficSide::Right), TrafficSide::Right, kerb_m)
+    DrawnNetwork::new(&map(radius_m, &tags(ring_m), &tags(arm_m), TrafficSide::Right), TrafficSide::Right, kerb_m)
 }
 
 #[test]
@@ -72,10 +72,10 @@ fn who_gets_straight_over_depends_on_the_ring() {
 #[test]
 fn driving_on_the_left_mirrors_every_passage() {
     let tags = "highway=secondary width=8";
-    let right = Drawn::new(&map(22.0, tags, tags, TrafficSide::Right), TrafficSide::Right, 12.0);
-    let left = Drawn::new(&map(22.0, tags, tags, TrafficSide::Left), TrafficSide::Left, 12.0);
+    let right = DrawnNetwork::new(&map(22.0, tags, tags, TrafficSide::Right), TrafficSide::Right, 12.0);
+    let left = DrawnNetwork::new(&map(22.0, tags, tags, TrafficSide::Left), TrafficSide::Left, 12.0);
     for ends in ["WS", "WE", "WN"] {
-        let rsc = |drawn: &Drawn| drawn.best(ends, Policy::Carriageway, "EU-SEMI16.5").unwrap();
+        let rsc = |drawn: &DrawnNetwork| drawn.best(ends, Policy::Carriageway, "EU-SEMI16.5").unwrap();
         let (a, b) = (rsc(&right), rsc(&left));
         assert_eq!(a.safe(), b.safe(), "{ends}");
         let (a, b) = (a.rsc_m.unwrap(), b.rsc_m.unwrap());
@@ -92,10 +92,11 @@ fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
     for (id, nodes) in [(11, "defghijklmno"), (12, "opqrstuvwxabcd")] {
         map = map.way_of_id(id, nodes, &format!("junction=roundabout {tags}"));
     }
-    let pieces = Drawn::new(&map, TrafficSide::Right, 12.0);
+    let pieces = DrawnNetwork::new(&map, TrafficSide::Right, 12.0);
     assert_eq!(pieces.passages().len(), 12);
     for ends in ["WE", "NS", "EN", "SW"] {
-        let made = |drawn: &Drawn| drawn.corridors(ends, Policy::Carriageway, LengthClass::Short).unwrap().on_road();
+        let made =
+            |drawn: &DrawnNetwork| drawn.corridors(ends, Policy::Carriageway, LengthClass::Short).unwrap().on_road();
         let (a, b) = (made(&whole), made(&pieces));
         let same: Vec<_> = a.iter().filter_map(|a| Some((a, b.iter().find(|b| b.code == a.code)?))).collect();
         assert!(same.len() > 30, "{ends} {} {} {}", a.len(), b.len(), same.len());
@@ -114,7 +115,7 @@ fn one_way_arms_only_enter_or_leave() {
     let tags = "highway=secondary width=8";
     let map =
         map(20.0, tags, tags, TrafficSide::Right).without_way(2).way_of_id(2, "Wa", &format!("{tags} oneway=yes"));
-    let drawn = Drawn::new(&map, TrafficSide::Right, 12.0);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, 12.0);
     // Four ways in and three out; no exit where the vehicle entered.
     assert_eq!(drawn.passages().len(), 3 + 3 * 2);
     let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to.index()].to_node != id_of('W');
@@ -189,7 +190,7 @@ fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_betwee
     }
 }
 
-fn certified(drawn: &Drawn, id: &str, edges: &[Verdict], threads: usize) -> Vec<TurnCertificate> {
+fn certified(drawn: &DrawnNetwork, id: &str, edges: &[Verdict], threads: usize) -> Vec<TurnCertificate> {
     let (made, _) = drawn.certified(&[id], edges, Policy::Carriageway, threads);
     let mut out: Vec<_> = made.into_iter().map(|(_, certificate)| certificate).collect();
     out.sort_by_key(|certificate| certificate.turn);
@@ -229,7 +230,8 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
 #[test]
 fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
     let ring = "highway=secondary width=8 maxweight=abc";
-    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
+    let drawn =
+        DrawnNetwork::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
     let turns = drawn.facts();
     let over = drawn.passage("WE");
     for (on_the_ring, expected) in [
@@ -252,7 +254,8 @@ fn a_rule_of_an_arc_counts_where_the_arc_lacks_room_for_going_round() {
 #[test]
 fn a_passage_over_an_arc_that_is_closed_at_night_is_certified_for_the_day() {
     let ring = "highway=secondary width=8 hgv:conditional=no@(22:00-06:00)";
-    let drawn = Drawn::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
+    let drawn =
+        DrawnNetwork::new(&map(20.0, ring, "highway=secondary width=8", TrafficSide::Right), TrafficSide::Right, 12.0);
     let turns = drawn.facts();
     let over = drawn.passage("WE");
     let time = Verdict::Unknown(UnknownReason::Time);
@@ -277,7 +280,7 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
         &[east],
         "restriction=no_right_turn",
     );
-    let drawn = Drawn::new(&map, TrafficSide::Right, 12.0);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, 12.0);
     assert!(drawn.passage("WE").movement.forbidden.is_some());
     assert!(drawn.passage("WN").movement.forbidden.is_none());
     let safe = vec![Verdict::Safe; drawn.network.edges.len()];

@@ -16,10 +16,10 @@ use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
 use netcert_testing::oracle::whole;
-use routing::{Driver, Region};
+use routing::{TestDriver, TestRegion};
 
-fn region(map: &AsciiMap, kerb_m: f64) -> Region {
-    let mut region = Region::of(map.extract(), Policy::Carriageway);
+fn region(map: &AsciiMap, kerb_m: f64) -> TestRegion {
+    let mut region = TestRegion::of(map.extract(), Policy::Carriageway);
     region.kerbs = Kerbs::everywhere(kerb_m);
     region
 }
@@ -30,24 +30,24 @@ fn roundabout() -> AsciiMap {
     roundabout::map(20.0, tags, tags, TrafficSide::Right)
 }
 
-fn edge(region: &Region, ends: &str) -> EdgeNo {
+fn edge(region: &TestRegion, ends: &str) -> EdgeNo {
     ascii_map::edge(&region.network, ends)
 }
 
 /// The middle of the first piece of an edge.
-fn on(region: &Region, ends: &str) -> Position {
+fn on(region: &TestRegion, ends: &str) -> Position {
     let line: Vec<_> = region.network.positions(&region.network.edges[edge(region, ends).index()]).collect();
     let (a, b) = (line[0].degrees(), line[1].degrees());
     Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
 }
 
-fn ask(region: &Region, driver: &Driver, [from, to]: [&str; 2], alternatives: usize) -> Answer {
+fn ask(region: &TestRegion, driver: &TestDriver, [from, to]: [&str; 2], alternatives: usize) -> Answer {
     let mut planner = region.planner(driver, Measure::Distance);
     let places = vec![on(region, from), on(region, to)];
     planner.answer(&Question { places, snap_m: 5.0, alternatives, tries: 20 }, &Stop::never()).unwrap()
 }
 
-fn turn(region: &Region, from: &str, to: &str) -> PartKind {
+fn turn(region: &TestRegion, from: &str, to: &str) -> PartKind {
     PartKind::Turn { from: edge(region, from), to: edge(region, to) }
 }
 
@@ -152,7 +152,7 @@ fn turns_that_share_a_stretch_of_road_are_blended_or_refused() {
         // Up to 30 m the two turns are one movement, too, which would need no blending.
         driver.permits.passages.fill(Permit::UNKNOWN);
         let driver = driver;
-        let (mut strokes, mut menu) = (region.strokes(), Menu::new(Box::new(Region::turns(&driver))));
+        let (mut strokes, mut menu) = (region.strokes(), Menu::new(Box::new(TestRegion::turns(&driver))));
         let mut piece = |from: &str, to: &str| {
             let movement: Movement = *region.movements.between(edge(&region, from), edge(&region, to)).unwrap();
             menu.chosen(&mut strokes, &movement, &[]).unwrap()
@@ -254,7 +254,7 @@ fn what_blocks_is_few_places_or_few_metres_whichever_is_less() {
 }
 
 /// Whether the turn is safe by itself.
-fn passes(region: &Region, driver: &Driver, from: &str, to: &str) -> bool {
+fn passes(region: &TestRegion, driver: &TestDriver, from: &str, to: &str) -> bool {
     let place = region.movements.index(edge(region, from), edge(region, to)).unwrap();
     driver.permits.movements[place].verdict == Verdict::Safe
 }
@@ -326,7 +326,7 @@ fn a_route_in_the_lane_has_the_turns_strip_around_a_turn() {
         [('A', [-450.0, 0.0]), ('J', [0.0, 0.0]), ('E', [450.0, 0.0]), ('S', [0.0, -450.0]), ('N', [0.0, 450.0])];
     let tags = "highway=primary lanes=6 width=21";
     let map = AsciiMap::placed(&nodes).way("AJE", tags).way("SJN", tags);
-    let mut region = Region::of(map.extract(), Policy::Lane);
+    let mut region = TestRegion::of(map.extract(), Policy::Lane);
     region.kerbs = Kerbs::everywhere(12.0);
     let driver = region.driver("EU-SEMI16.5");
     let answer = ask(&region, &driver, ["AJ", "JS"], 0);

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use ascii_map::{AsciiMap, built};
-use netcert::network::{EdgeNo, MovementKind, Network, Restriction};
+use netcert::network::{EdgeNo, ForbiddenSequence, MovementKind, Network};
 use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
 use netcert::stop::Stop;
@@ -19,7 +19,7 @@ use netcert::verdict::Verdict;
 use netcert_testing::oracle::draw::Draw;
 use netcert_testing::oracle::whole;
 use proptest::prelude::*;
-use routing::Region;
+use routing::TestRegion;
 
 const NAMES: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghi";
 const COLUMNS: usize = 5;
@@ -129,7 +129,7 @@ fn forbid(network: &mut Network, sequence: &[EdgeNo]) {
     network.restriction_edges.extend(sequence);
     let edges = start..network.restriction_edges.len() as u32;
     let kind = RestrictionKind { only: false, turn: RestrictedTurn::Entry };
-    network.restrictions.push(Restriction { relation_id: 1, kind, conditional: false, edges });
+    network.restrictions.push(ForbiddenSequence { relation_id: 1, kind, conditional: false, edges });
 }
 
 /// Everything is open, including U-turns.
@@ -334,7 +334,7 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
 }
 
 /// Answers for random pairs of places on certified roads.
-fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer> {
+fn answers(region: &TestRegion, driver: &routing::TestDriver, pairs: u64) -> Vec<Answer> {
     let mut planner = region.planner(driver, Measure::Time);
     let safe: Vec<EdgeNo> =
         EdgeNo::first(region.network.edges.len()).filter(|&edge| driver.permits.edge(edge)).collect();
@@ -353,7 +353,7 @@ fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer>
 }
 
 /// Asserts that no edge, turn or restriction is violated, and that the whole route is safe.
-fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
+fn assert_lawful(region: &TestRegion, driver: &routing::TestDriver, route: &Route) {
     assert!(route.certificate.result.safe());
     let in_passage = |at: &usize| route.drive.over.iter().any(|arcs| arcs.contains(at));
     let edges = || route.drive.edges.iter().enumerate();
@@ -383,7 +383,7 @@ fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
 }
 
 /// Number of certified routes of at most `most_m` metres that hold, routes with turns first.
-fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f64, count: usize) -> usize {
+fn held(region: &TestRegion, driver: &routing::TestDriver, answers: &[Answer], most_m: f64, count: usize) -> usize {
     let turns =
         |route: &Route| route.path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count();
     let mut routes: Vec<&Route> = answers.iter().flat_map(|answer| &answer.routes).collect();
@@ -398,7 +398,7 @@ fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f
 
 #[test]
 fn routes_of_the_drawn_region_hold_as_a_whole() {
-    let region = Region::read(&demo(), Policy::Carriageway);
+    let region = TestRegion::read(&demo(), Policy::Carriageway);
     let driver = region.driver("AGV-TUG4");
     let answers = answers(&region, &driver, 24);
     let found = answers.iter().filter(|answer| !answer.routes.is_empty()).count();
@@ -423,7 +423,7 @@ fn routes_of_real_extracts_hold_as_a_whole() {
     ];
     for (name, id, about_deg) in towns {
         let Some(path) = extract(name) else { continue };
-        let region = Region::read_middle(&path, Policy::Carriageway, about_deg);
+        let region = TestRegion::read_middle(&path, Policy::Carriageway, about_deg);
         let driver = region.driver(id);
         let answers = answers(&region, &driver, 150);
         let found = answers.iter().filter(|answer| !answer.routes.is_empty()).count();

@@ -2,7 +2,7 @@
 //! on both driving sides, in both directions, under every policy. No corridor leaves the mapped road.
 
 use netcert_testing::ascii_map::{AsciiMap, edge, strokes};
-use netcert_testing::junctions::Drawn;
+use netcert_testing::junctions::DrawnNetwork;
 
 use netcert::corridor::{Params, StrokeCorridor, TaperCause, stroke_corridor};
 use netcert::explain::{explain_edge, words};
@@ -40,7 +40,7 @@ fn sharpest_m(made: &StrokeCorridor) -> f64 {
 
 /// A road that parts into two carriageways, each `jog_m` beside the road's middle after `reach_m`. `side` is 1 for
 /// right-hand traffic, and −1 for the mirrored map with left-hand traffic.
-fn parted(tags: &str, carriageway: &str, [jog_m, reach_m]: [f64; 2], side: f64) -> Drawn {
+fn parted(tags: &str, carriageway: &str, [jog_m, reach_m]: [f64; 2], side: f64) -> DrawnNetwork {
     let y = jog_m * side;
     let nodes = [
         ('A', [0.0, 0.0]),
@@ -52,7 +52,7 @@ fn parted(tags: &str, carriageway: &str, [jog_m, reach_m]: [f64; 2], side: f64) 
     ];
     let one_way = format!("{carriageway} oneway=yes");
     let map = AsciiMap::placed(&nodes).way("AB", tags).way("BCD", &one_way).way("EFB", &one_way);
-    Drawn::new(&map, if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
+    DrawnNetwork::new(&map, if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
 }
 
 const ROAD: &str = "highway=secondary lanes=2";
@@ -100,23 +100,23 @@ fn without_a_second_carriageway_or_a_jog_nothing_is_made_up() {
     // The road becomes one-way, and its line bends like a jog.
     let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [320.0, -1.625]), ('D', [700.0, -1.625])];
     let map = AsciiMap::placed(&nodes).way("AB", ROAD).way("BCD", &format!("{CARRIAGEWAY} oneway=yes"));
-    let alone = Drawn::new(&map, TrafficSide::Right, 5.0);
+    let alone = DrawnNetwork::new(&map, TrafficSide::Right, 5.0);
     assert!(narrowest(&corridor(&alone.network, "AB", Policy::Lane)) < 1.7);
 }
 
 /// A road of 7 m that becomes narrow at a side road.
-fn becomes_narrow(beyond: &str, side_road: bool) -> Drawn {
+fn becomes_narrow(beyond: &str, side_road: bool) -> DrawnNetwork {
     becomes_narrow_at_an_angle(beyond, side_road, 0.0)
 }
 
 /// The same with a narrow part that ends `aside_m` to the left.
-fn becomes_narrow_at_an_angle(beyond: &str, side_road: bool, aside_m: f64) -> Drawn {
+fn becomes_narrow_at_an_angle(beyond: &str, side_road: bool, aside_m: f64) -> DrawnNetwork {
     let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [600.0, aside_m]), ('D', [300.0, -200.0])];
     let map = AsciiMap::placed(&nodes)
         .way("AB", "highway=secondary width=7")
         .way("BC", &format!("highway=secondary {beyond}"));
     let map = if side_road { map.way("DB", "highway=secondary width=7") } else { map };
-    Drawn::new(&map, TrafficSide::Right, 9.0)
+    DrawnNetwork::new(&map, TrafficSide::Right, 9.0)
 }
 
 #[test]
@@ -152,13 +152,13 @@ fn a_road_goes_on_where_it_becomes_narrow_without_a_junction_or_by_little() {
 }
 
 /// Two lanes become three, two of them in the opposite direction. This direction's lane moves aside by half a lane.
-fn widened(length_m: f64, side: f64) -> Drawn {
+fn widened(length_m: f64, side: f64) -> DrawnNetwork {
     let nodes =
         [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [300.0 + length_m, 0.0]), ('D', [600.0 + length_m, 0.0])];
     let map = AsciiMap::placed(&nodes)
         .way("AB", ROAD)
         .way("BC", "highway=secondary lanes=3 lanes:forward=1 lanes:backward=2");
-    Drawn::new(&map.way("CD", ROAD), if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
+    DrawnNetwork::new(&map.way("CD", ROAD), if side < 0.0 { TrafficSide::Left } else { TrafficSide::Right }, 5.0)
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 use netcert_testing::ascii_map;
 use netcert_testing::catalogue::catalogued;
-use netcert_testing::junctions::{Certified, Drawn};
+use netcert_testing::junctions::{Certified, DrawnNetwork};
 
 use ascii_map::{AsciiMap, id_of};
 use geo::{Contains as _, Distance as _, Euclidean};
@@ -29,9 +29,9 @@ const CROSS: &str = "
             E
         ";
 
-fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Drawn {
+fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> DrawnNetwork {
     let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
-    Drawn::new(&map, if left_hand_traffic { TrafficSide::Left } else { TrafficSide::Right }, kerb_m)
+    DrawnNetwork::new(&map, if left_hand_traffic { TrafficSide::Left } else { TrafficSide::Right }, kerb_m)
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
         .way("ABC", "highway=secondary width=8 lanes=2")
         .way("DBE", "highway=tertiary width=6.5")
         .way("FCG", "highway=residential width=5.5");
-        let drawn = Drawn::new(&map, TrafficSide::Right, kerb_m);
+        let drawn = DrawnNetwork::new(&map, TrafficSide::Right, kerb_m);
         let mut looked_at = 0;
         for turn in drawn.facts() {
             let made =
@@ -175,7 +175,7 @@ fn a_path_has_an_area_that_holds_it_and_the_road_behind_it() {
 }
 
 /// A road that meets two others on its west side, some way apart.
-fn two_mouths(apart: usize) -> Drawn {
+fn two_mouths(apart: usize) -> DrawnNetwork {
     let mut drawing = String::from("\n          D\n");
     drawing.push_str(&"          |\n".repeat(6));
     drawing.push_str("A---------B\n");
@@ -184,7 +184,7 @@ fn two_mouths(apart: usize) -> Drawn {
     drawing.push_str(&"          |\n".repeat(6));
     drawing.push_str("          E\n");
     let tags = "highway=secondary width=7";
-    Drawn::new(
+    DrawnNetwork::new(
         &AsciiMap::drawn(8.0, &drawing).way("AB", tags).way("FG", tags).way("DBGE", tags),
         TrafficSide::Right,
         6.0,
@@ -193,7 +193,7 @@ fn two_mouths(apart: usize) -> Drawn {
 
 #[test]
 fn the_crossings_of_nodes_close_by_belong_to_the_area() {
-    let inside = |drawn: &Drawn, across: f64, along: f64| {
+    let inside = |drawn: &DrawnNetwork, across: f64, along: f64| {
         let made = drawn.corridors("ABG", Policy::Carriageway, LengthClass::Short).unwrap();
         let frame = made.frame;
         let node = |name: char| {
@@ -259,7 +259,7 @@ fn a_roundabout_is_entered_and_left_by_turns() {
     .way("S3", "highway=tertiary width=7")
     .way("W4", "highway=tertiary width=7")
     .way("E2", "highway=tertiary width=7");
-    let drawn = Drawn::new(&map, TrafficSide::Right, 8.0);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, 8.0);
     let facts = drawn.facts();
     let (entry, exit) = (drawn.turn("W43"), drawn.turn("43S"));
     assert!(entry.angle_deg < 0.0 && exit.angle_deg < 0.0, "{} {}", entry.angle_deg, exit.angle_deg);
@@ -269,7 +269,7 @@ fn a_roundabout_is_entered_and_left_by_turns() {
 }
 
 /// Certificates with all edges safe.
-fn certified(drawn: &Drawn, ids: &[&str], policy: Policy, threads: usize) -> Certified {
+fn certified(drawn: &DrawnNetwork, ids: &[&str], policy: Policy, threads: usize) -> Certified {
     drawn.certified(ids, &vec![Verdict::Safe; drawn.network.edges.len()], policy, threads)
 }
 
@@ -282,7 +282,7 @@ fn a_restriction_forbids_whatever_fits() {
         &[2],
         "restriction=no_right_turn",
     );
-    let drawn = Drawn::new(&map, TrafficSide::Right, 3.0);
+    let drawn = DrawnNetwork::new(&map, TrafficSide::Right, 3.0);
     let (certificates, _) = certified(&drawn, &["AGV-TUG4"], Policy::Lane, 1);
     let turns = drawn.facts();
     let of = |nodes: &str| {
@@ -331,7 +331,7 @@ fn no_claim_of_a_turn_is_refuted() {
 }
 
 /// Two streets of three lanes each way.
-fn wide_streets(strip: Policy) -> Drawn {
+fn wide_streets(strip: Policy) -> DrawnNetwork {
     let mut drawn = cross("highway=primary lanes=6 width=21", false, 9.0);
     drawn.params.strip = strip;
     drawn
@@ -342,14 +342,14 @@ fn near_a_turn_all_lanes_of_the_direction_count_where_the_settings_say_so() {
     let [same, direction] = [Policy::Lane, Policy::Direction].map(wide_streets);
     let mut more = 0;
     for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "EU-SEMI16.5"), ("EBC", "US-WB67"), ("EBA", "US-WB67")] {
-        let safe = |drawn: &Drawn| drawn.safe(nodes, Policy::Lane, id);
+        let safe = |drawn: &DrawnNetwork| drawn.safe(nodes, Policy::Lane, id);
         println!("{nodes} {id}: same {}, direction {}", safe(&same), safe(&direction));
         assert!(safe(&direction) || !safe(&same), "{nodes} {id}");
         more += usize::from(safe(&direction) && !safe(&same));
     }
     assert!(more > 0);
     // The strip is never less than the policy's own.
-    let corridors = |drawn: &Drawn| drawn.corridors("EBC", Policy::Carriageway, LengthClass::Short).unwrap();
+    let corridors = |drawn: &DrawnNetwork| drawn.corridors("EBC", Policy::Carriageway, LengthClass::Short).unwrap();
     assert_eq!(corridors(&same), corridors(&direction));
 }
 

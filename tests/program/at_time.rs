@@ -3,7 +3,7 @@
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 
 const CLOSED: &str = "no @ (22:00-06:00)";
 
@@ -49,7 +49,7 @@ fn certified() -> WorkFolder {
 }
 
 /// The verdicts that a query shows, with their reasons, each once, in order.
-fn verdicts(answer: &Answer) -> Vec<String> {
+fn verdicts(answer: &ProgramRun) -> Vec<String> {
     let out = answer.out();
     let mut rows = csv::Reader::from_reader(out.as_bytes());
     let column = |name: &str, headers: &csv::StringRecord| headers.iter().position(|header| header == name).unwrap();

@@ -160,7 +160,7 @@ impl Source {
     }
 }
 
-fn is_name(word: &str) -> bool {
+pub(super) fn is_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
@@ -195,7 +195,7 @@ fn import(words: &[&str], mut at: usize, above: &[String], found: &mut Vec<(Stri
 }
 
 /// The words and signs of a source text, without spaces, comments, texts and lifetimes.
-fn words(mut text: &str) -> Vec<&str> {
+pub(super) fn words(mut text: &str) -> Vec<&str> {
     let mut found = Vec::new();
     while !text.is_empty() {
         let (length, counts) = word(text);
@@ -259,7 +259,7 @@ fn behind_group(words: &[&str], mut at: usize) -> usize {
 }
 
 /// The words without items that only tests have.
-fn without_tests<'t>(words: &[&'t str]) -> Vec<&'t str> {
+pub(super) fn without_tests<'t>(words: &[&'t str]) -> Vec<&'t str> {
     let marks: [&[&str]; 2] =
         [&["#", "[", "cfg", "(", "test", ")", "]"], &["#", "[", "cfg", "(", "all", "(", "test", ","]];
     let (mut found, mut at) = (Vec::new(), 0);

@@ -9,7 +9,7 @@ use std::io::Read as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use program::{Answer, WorkFolder};
+use program::{ProgramRun, WorkFolder};
 use serde_json::{Value, json};
 
 /// The rows of a CSV text without quoted line breaks, by the names in the header.
@@ -346,7 +346,7 @@ fn a_region_made_portion_by_portion_has_the_same_bytes() {
         let place = WorkFolder::empty();
         let line = format!("ingest {} --db region.gpkg --vehicle AU-SEMI19 AU-BDOUBLE26 {options}", path.display());
         let mut command = place.command(&line);
-        Answer::of(&line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
+        ProgramRun::of(&line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
         assert_eq!(place.files(), ["region.gpkg"]);
         place.read("region.gpkg")
     };
@@ -361,7 +361,7 @@ fn threads_and_time_of_day_leave_no_trace() {
     let ingest = |line: &str| {
         let place = WorkFolder::empty();
         let mut command = place.command(line);
-        Answer::of(line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
+        ProgramRun::of(line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
         place.read("demo.gpkg")
     };
     let one = ingest("ingest {demo} --vehicle AU-SEMI19 --threads 1");
@@ -370,7 +370,7 @@ fn threads_and_time_of_day_leave_no_trace() {
     assert!(one.windows(24).any(|text| text == b"2023-11-14T22:13:20.000Z"));
     let place = WorkFolder::empty();
     let mut wrong = place.command("ingest {demo}");
-    Answer::of("epoch", wrong.env("SOURCE_DATE_EPOCH", "yesterday")).fails().tells("SOURCE_DATE_EPOCH=yesterday");
+    ProgramRun::of("epoch", wrong.env("SOURCE_DATE_EPOCH", "yesterday")).fails().tells("SOURCE_DATE_EPOCH=yesterday");
 }
 
 /// The script of README's first command, with this program in place of the one that it would build.
@@ -391,7 +391,7 @@ fn the_demo_ends_with_a_road_that_only_the_shorter_vehicle_fits() {
     let mut script = std::process::Command::new("sh");
     let path = format!("{}:{}", place.path("bin").display(), std::env::var("PATH").unwrap());
     script.arg("demo").current_dir(place.path(".")).env("PATH", path);
-    let told = Answer::of("./demo", &mut script).succeeds();
+    let told = ProgramRun::of("./demo", &mut script).succeeds();
     let told = told.shows("AU-SEMI19     safe, RSC +").shows("AU-ATRIPLE53  unsafe: width, RSC -").shows("demo.svg");
     assert!(place.path("target/demo.svg").exists(), "{}", told.out());
 }

@@ -9,7 +9,7 @@ use geojson::{Feature, FeatureCollection, GeoJson, GeometryValue};
 use netcert::corridor::Frame;
 use serde_json::Value;
 
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 use netcert_testing::skip::skipped;
 
 const VEHICLE: &str = "AU-SEMI19";
@@ -224,7 +224,7 @@ fn gdal_reads_every_shape_with_its_properties() {
     let ogrinfo = |arguments: &[&str]| {
         let mut command = Command::new("ogrinfo");
         command.arg("-ro").arg(place.path("turn.geojson")).args(arguments);
-        let answer = Answer::of("ogrinfo", &mut command).succeeds().tells_nothing();
+        let answer = ProgramRun::of("ogrinfo", &mut command).succeeds().tells_nothing();
         assert!(!answer.out().contains("Warning"), "{}", answer.out());
         answer.out()
     };

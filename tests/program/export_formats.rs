@@ -10,7 +10,7 @@ use std::process::Command;
 
 use geo::Intersects as _;
 use geo::{LineString, Polygon};
-use program::{Answer, WorkFolder};
+use program::{ProgramRun, WorkFolder};
 use serde_json::Value;
 
 const VEHICLE: &str = "AU-SEMI19";
@@ -136,7 +136,7 @@ fn gdal() -> bool {
 fn by_gdal(place: &WorkFolder, file: &str, more: &[&str]) -> Table {
     let mut command = Command::new("ogr2ogr");
     command.args(["-f", "CSV", "/vsistdout/"]).arg(place.path(file)).args(more);
-    Table::of(&Answer::of(file, &mut command).succeeds().out())
+    Table::of(&ProgramRun::of(file, &mut command).succeeds().out())
 }
 
 /// Numbers as numbers: GDAL writes its own decimals. It has no word for `false` in CSV.
@@ -165,7 +165,7 @@ fn gdal_reads_what_csv_says() {
                     assert!(alike(&row[at], cell), "{file} {id} {name}: {cell}, csv {}", row[at]);
                 }
             }
-            let info = Answer::of(&file, Command::new("ogrinfo").args(["-al", "-so"]).arg(place.path(&file)));
+            let info = ProgramRun::of(&file, Command::new("ogrinfo").args(["-al", "-so"]).arg(place.path(&file)));
             let id = if layer == "edges" { "edge_id: Integer64" } else { "turn_id: Integer64" };
             info.succeeds().shows("Line String").shows(id).shows("rsc_m: Real").shows("Integer(Boolean)");
         }
@@ -196,15 +196,15 @@ fn duckdb_and_pyarrow_read_what_csv_says() {
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_tables.py"));
     command.arg(place.path("geoparquet")).arg(place.path("csv"));
-    Answer::of("tables.py", &mut command).succeeds().shows("edges: ").shows("turns: ");
+    ProgramRun::of("tables.py", &mut command).succeeds().shows("edges: ").shows("turns: ");
 }
 
 /// Overture's own models judge every feature of a folder. `None` if they are not installed.
-pub(crate) fn judged_by_models(place: &WorkFolder, folder: &str) -> Option<Answer> {
+pub(crate) fn judged_by_models(place: &WorkFolder, folder: &str) -> Option<ProgramRun> {
     let python = engines::python()?;
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_overture.py")).arg(place.path(folder));
-    Some(Answer::of("check_overture.py", &mut command))
+    Some(ProgramRun::of("check_overture.py", &mut command))
 }
 
 #[test]
@@ -384,7 +384,7 @@ fn an_answer_of_openrouteservice_becomes_rows() {
     if command.output().is_err() {
         return skipped("jq", "Debian: jq");
     }
-    let rows = Answer::of("jq", &mut command).succeeds().out();
+    let rows = ProgramRun::of("jq", &mut command).succeeds().out();
     let rows: Vec<Vec<&str>> = rows.lines().map(|row| row.split(',').collect()).collect();
     assert_eq!(rows.iter().map(|row| row[4]).collect::<Vec<_>>(), ["12", "7472"]);
     assert_eq!(rows[0][..3], ["\"logie_roads\"", "\"driving-hgv\"", "\"2025-11-17T14:18:55Z\""]);

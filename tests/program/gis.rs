@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 use netcert_testing::python::python;
 use netcert_testing::skip::skipped;
 
@@ -33,10 +33,10 @@ fn gdal_s_validator_finds_nothing() {
         // Its dependency, GDAL itself, would be compiled; the validator can do without.
         let Some(python) = python(&format!("gpkg-{version}"), &["--no-deps", &package]) else { continue };
         let find = "import importlib.util as u; print(u.find_spec('osgeo_utils.samples.validate_gpkg').origin)";
-        let found = Answer::of("find", Command::new(&python).args(["-c", find])).succeeds().out();
+        let found = ProgramRun::of("find", Command::new(&python).args(["-c", find])).succeeds().out();
         let mut command = Command::new(&python);
         command.arg(found.trim()).args(["-k", "--warning-as-error"]).arg(place.path("demo.gpkg"));
-        let answer = Answer::of("validate_gpkg.py", &mut command);
+        let answer = ProgramRun::of("validate_gpkg.py", &mut command);
         assert_eq!((answer.out().as_str(), answer.err().as_str()), ("", ""), "{version}");
         let _ = answer.succeeds();
         judged += 1;
@@ -52,7 +52,7 @@ fn gdal_lists_what_users_read_without_a_warning() {
     let place = WorkFolder::with_demo();
     let ogrinfo = |arguments: &[&str]| {
         let answer =
-            Answer::of("ogrinfo", Command::new("ogrinfo").arg("-ro").arg(place.path("demo.gpkg")).args(arguments));
+            ProgramRun::of("ogrinfo", Command::new("ogrinfo").arg("-ro").arg(place.path("demo.gpkg")).args(arguments));
         let answer = answer.succeeds().tells_nothing();
         assert!(!answer.out().contains("Warning"), "{}", answer.out());
         answer.out()
@@ -101,10 +101,10 @@ fn pyogrio_fiona_and_duckdb_read_what_is_there() {
     }
     let spatial = "import duckdb_extension_spatial as s, pathlib; \
                    print(next(pathlib.Path(s.__file__).parent.rglob('*.duckdb_extension'), '-'))";
-    let spatial = Answer::of("find", Command::new(&python).args(["-c", spatial])).succeeds().out();
+    let spatial = ProgramRun::of("find", Command::new(&python).args(["-c", spatial])).succeeds().out();
     let mut command = Command::new(&python);
     command.arg(script("check_geopackage.py")).arg(place.path("demo.gpkg")).arg(place.path("")).arg(spatial.trim());
-    let answer = Answer::of("check_geopackage.py", &mut command).succeeds().tells_nothing();
+    let answer = ProgramRun::of("check_geopackage.py", &mut command).succeeds().tells_nothing();
     let _ = answer.shows("layers: 12 ").shows("one system: ").shows("ids: whole").shows("statistics: ");
 }
 
@@ -153,7 +153,7 @@ fn qgis_opens_every_layer_in_its_style() {
     };
     let place = WorkFolder::with_demo();
     python.arg(script("run_qgis.py")).arg(place.path("demo.gpkg")).arg(place.path("roads.png"));
-    let out = Answer::of("run_qgis.py", python.env("QT_QPA_PLATFORM", "offscreen")).succeeds().out();
+    let out = ProgramRun::of("run_qgis.py", python.env("QT_QPA_PLATFORM", "offscreen")).succeeds().out();
     for layer in [
         "edge: 7 rules",
         "junction: 3 rules",

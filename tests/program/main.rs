@@ -25,6 +25,7 @@ mod geopackage;
 mod gis;
 mod manoeuvres;
 mod named_tags;
+mod names;
 mod overture;
 mod pages;
 mod paper;

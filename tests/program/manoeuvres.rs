@@ -6,7 +6,9 @@ use netcert_testing::xml;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use netcert::manoeuvres::{self, Finding, Guide, Measure, Sureness, Turn, TurnMeasurements, beyond_limit};
+use netcert::manoeuvres::{
+    self, Guide, LimitFinding, PerformanceMeasure, PrescribedTurn, Sureness, TurnMeasurements, beyond_limit,
+};
 use netcert::picture;
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert_testing::oracle::turns;
@@ -50,7 +52,7 @@ fn a_rigid_lorry_settles_on_the_closed_form_of_a_circle() {
 fn steer_axle_guides_reach_the_steady_circle() {
     // Steady off-tracking R − √(R² − K) at the end of many turns, the middle of the steer axle on the path.
     let semi = catalogued("EU-SEMI16.5");
-    let turn = Turn { radius_m: 25.0, angle_rad: 2.0 * PI - 1e-3, guide: Guide::SteerAxle, exit_m: 0.0 };
+    let turn = PrescribedTurn { radius_m: 25.0, angle_rad: 2.0 * PI - 1e-3, guide: Guide::SteerAxle, exit_m: 0.0 };
     let drive = turn.drive(&semi);
     let k: f64 = 3.7f64.powi(2) - 0.6f64.powi(2) + 7.7f64.powi(2);
     let axle = drive.poses.last().unwrap()[1].axle;
@@ -114,10 +116,11 @@ fn european_circles() {
         let report = manoeuvres::report(&vehicle);
         assert!((report.circle.inner_m - inner).abs() < 0.02, "{id}: {}", report.circle.inner_m);
         assert!((report.circle.width_m() - ring).abs() < 0.02, "{id}: {}", report.circle.width_m());
-        let verdict = |measure: Measure| report.findings.iter().find(|f| f.limit.measure == measure).unwrap();
-        assert_eq!(verdict(Measure::InnerRadius).passes, passes, "{id}");
-        assert_eq!(verdict(Measure::RingWidth).passes, passes, "{id}");
-        assert!(verdict(Measure::SwingOut).passes, "{id}");
+        let verdict =
+            |measure: PerformanceMeasure| report.findings.iter().find(|f| f.limit.measure == measure).unwrap();
+        assert_eq!(verdict(PerformanceMeasure::InnerRadius).passes, passes, "{id}");
+        assert_eq!(verdict(PerformanceMeasure::RingWidth).passes, passes, "{id}");
+        assert!(verdict(PerformanceMeasure::SwingOut).passes, "{id}");
     }
     let semi = catalogued("EU-SEMI16.5");
     assert!((manoeuvres::report(&semi).circle.swing_out_m - 0.26).abs() < 0.01);
@@ -129,8 +132,8 @@ fn european_circles() {
 fn a_wheelbase_a_centimetre_too_long_does_not_pass() {
     let inside = |wheelbase: f64| {
         let trailer = rigid([wheelbase, 1.6, 4.3, 2.55]);
-        let turn = Turn { radius_m: 12.5 - 2.04, angle_rad: 4.0 * PI, guide: Guide::SteerAxle, exit_m: 0.0 };
-        manoeuvres::Ring::of(&trailer, &turn.drive(&trailer)).inner_m
+        let turn = PrescribedTurn { radius_m: 12.5 - 2.04, angle_rad: 4.0 * PI, guide: Guide::SteerAxle, exit_m: 0.0 };
+        manoeuvres::CircleMeasurements::of(&trailer, &turn.drive(&trailer)).inner_m
     };
     assert!((inside(8.135) - 5.30).abs() < 2e-3, "{}", inside(8.135));
     assert!(inside(8.15) < 5.30);
@@ -140,7 +143,7 @@ fn a_wheelbase_a_centimetre_too_long_does_not_pass() {
 fn levels_are_those_of_legal_combinations() {
     let level = |id: &str| {
         let report = manoeuvres::report(&catalogued(id));
-        let keeps = |f: &&Finding| f.limit.measure == Measure::SweptPath && f.passes;
+        let keeps = |f: &&LimitFinding| f.limit.measure == PerformanceMeasure::SweptPath && f.passes;
         report.findings.iter().find(keeps).map(|f| f.limit.who)
     };
     assert_eq!(level("AU-SEMI19"), Some("PBS level 1"));
@@ -154,7 +157,7 @@ fn what_cannot_be_driven_passes_no_limit_and_gets_no_number() {
     let train = catalogued("AU-ATRIPLE53");
     let report = manoeuvres::report(&train);
     assert!(beyond_limit(&train, &report.circle.angles_rad).is_some());
-    let circle = [Measure::InnerRadius, Measure::RingWidth, Measure::SwingOut];
+    let circle = [PerformanceMeasure::InnerRadius, PerformanceMeasure::RingWidth, PerformanceMeasure::SwingOut];
     assert!(
         report.findings.iter().filter(|f| circle.contains(&f.limit.measure)).all(|f| !f.passes && f.metres.is_none())
     );

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::export_formats::judged_by_models;
 use netcert_testing::extracts;
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 use netcert_testing::python;
 
 /// Vehicles and options of every database.
@@ -133,7 +133,7 @@ fn parquet(place: &WorkFolder, folder: &str, out: &str) -> Option<()> {
     let mut command = Command::new(python);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/overture_parquet.py"));
     command.arg(place.path(folder)).arg(place.path(out)).arg("2");
-    Answer::of("overture_parquet.py", &mut command).succeeds();
+    ProgramRun::of("overture_parquet.py", &mut command).succeeds();
     Some(())
 }
 
@@ -334,7 +334,7 @@ fn parquet_and_geojson_of_a_release_make_the_same_database() {
     if parquet(&place, "release", "lake").is_none() {
         return;
     }
-    let run = |line: &str| Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
+    let run = |line: &str| ProgramRun::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
     run(&format!("ingest release {MADE}"));
     run(&format!("ingest lake {MADE}"));
     let files =
@@ -506,7 +506,7 @@ fn the_page_does_what_it_says() {
                 bash.args(["-euo", "pipefail", "-c", &block.join("\n")])
                     .env("PATH", &path)
                     .current_dir(place.path("."));
-                Answer::of(&block.join("\n"), &mut bash).succeeds();
+                ProgramRun::of(&block.join("\n"), &mut bash).succeeds();
                 typed += block.len();
             }
         }

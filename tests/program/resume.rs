@@ -3,7 +3,7 @@
 use std::process::Stdio;
 use std::time::Duration;
 
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 use netcert_testing::skip::skipped;
 use netcert_testing::thorough::cases;
 
@@ -36,7 +36,7 @@ fn moments() -> impl Iterator<Item = Duration> {
 #[test]
 fn killed_at_any_moment_it_ends_with_the_same_bytes() {
     let undisturbed = WorkFolder::empty();
-    Answer::of(LINE, &mut command(&undisturbed, LINE)).succeeds();
+    ProgramRun::of(LINE, &mut command(&undisturbed, LINE)).succeeds();
     let expected = undisturbed.read("demo.gpkg");
 
     let (mut whole, mut went_on) = (0, 0);
@@ -58,7 +58,7 @@ fn killed_at_any_moment_it_ends_with_the_same_bytes() {
                 went_on += u32::from(done);
             }
         }
-        let last = Answer::of(&line, &mut command(&place, &line)).succeeds();
+        let last = ProgramRun::of(&line, &mut command(&place, &line)).succeeds();
         assert!(place.read("demo.gpkg") == expected, "{}", last.err());
         assert_eq!(place.files(), ["demo.gpkg"]);
     }

@@ -179,7 +179,7 @@ fn the_same_input_is_signed_with_the_same_bytes() {
     let unsigned = place.read("o.json");
     let at = |seconds: &str| {
         std::fs::write(place.path("o.json"), &unsigned).unwrap();
-        program::Answer::of("sign", place.command("sign o.json --key ours.pem").env("SOURCE_DATE_EPOCH", seconds))
+        program::ProgramRun::of("sign", place.command("sign o.json --key ours.pem").env("SOURCE_DATE_EPOCH", seconds))
             .succeeds();
         place.read("o.json")
     };
@@ -378,7 +378,7 @@ fn the_commands_of_the_page_work() {
     let script = format!("set -euo pipefail\n{}", commands.concat());
     let mut bash = Command::new("bash");
     bash.arg("-c").arg(&script).current_dir(place.path("")).env("PATH", path.unwrap());
-    let answer = program::Answer::of("docs/how-to/sign.md", &mut bash).succeeds();
+    let answer = program::ProgramRun::of("docs/how-to/sign.md", &mut bash).succeeds();
     assert_eq!(answer.out().matches("Signature Verified Successfully").count(), 2, "{}", answer.out());
     answer.shows("signed by Road Authority X on ").shows("every table is as it was signed");
 }

@@ -11,7 +11,7 @@ use netcert::pipeline::{
 use netcert::reporter::Silent;
 use netcert::settings::Settings;
 use netcert::stop::Stop;
-use netcert::store::{Database, QueryOptions, Stage};
+use netcert::store::{CheckpointStage, Database, QueryOptions};
 use netcert::vehicle::Catalogue;
 use netcert::verdict::{UnknownReason, Verdict};
 
@@ -67,10 +67,10 @@ fn results(tasks: &[Task], job: &str, fails: &[u32]) -> Vec<TaskResult> {
             around.clone().filter_map(|&need| strokes[need as usize].as_ref()).map(|done| &done.verdicts[..]).collect();
         let needed = if verdicts.len() < around.count() { NeededTasks::SomeFailed } else { NeededTasks::Done };
         let turns = done.as_ref().map(|_| job.turns(&task.bytes, &verdicts, needed, &Stop::never()).unwrap());
-        results.push(TaskResult { part: (Stage::Turns, task.number), work: turns });
+        results.push(TaskResult { part: (CheckpointStage::Turns, task.number), work: turns });
     }
     let part = |(task, done): (&Task, Option<netcert::pipeline::StrokesDone>)| TaskResult {
-        part: (Stage::Strokes, task.number),
+        part: (CheckpointStage::Strokes, task.number),
         work: done.map(|done| done.work),
     };
     results.extend(tasks.iter().zip(strokes).map(part));
@@ -155,7 +155,7 @@ fn what_is_missing_foreign_or_damaged_is_refused_by_name() {
         error
     };
     let mut lacking = results.clone();
-    lacking.retain(|result| result.part != (Stage::Turns, 3));
+    lacking.retain(|result| result.part != (CheckpointStage::Turns, 3));
     assert!(refused(divided, lacking).contains("the results of task 3 lack"));
     let mut cut = results.clone();
     cut[0].work = cut[0].work.take().map(|work| work[..0].to_vec());

@@ -8,14 +8,14 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 
 use netcert_testing::extracts;
-use netcert_testing::program::{Answer, WorkFolder};
+use netcert_testing::program::{ProgramRun, WorkFolder};
 use netcert_testing::skip::skipped;
 
 /// Vehicle and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";
 
-pub(crate) fn run(place: &WorkFolder, line: &str) -> Answer {
-    Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000"))
+pub(crate) fn run(place: &WorkFolder, line: &str) -> ProgramRun {
+    ProgramRun::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000"))
 }
 
 fn osmium(place: &WorkFolder, arguments: &[&str]) -> Option<()> {

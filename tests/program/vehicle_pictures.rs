@@ -137,7 +137,7 @@ fn a_hinge_limit_at_which_even_round_ends_meet_is_refused() {
 #[test]
 fn the_catalogue_passes_and_its_odd_ones_are_known() {
     let catalogue = Catalogue::builtin().unwrap();
-    let place = |w: &netcert::vehicle::Fault| w.place.split('"').nth(1).unwrap().to_owned();
+    let place = |w: &netcert::vehicle::VehicleFault| w.place.split('"').nth(1).unwrap().to_owned();
     let mut odd: Vec<String> = catalogue.warnings().iter().map(place).collect();
     odd.dedup();
     // Close-coupled bodies, of which sharp corners would touch: centre-axle trailers, buses, carts.

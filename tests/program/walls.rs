@@ -82,7 +82,7 @@ fn what_makes_and_explains_certificates_does_not_know_databases() {
     }
     let of_routes: Vec<PathBuf> =
         sources("crates/route/src").into_iter().filter(|(_, text)| reads(text)).map(|(path, _)| path).collect();
-    assert!(of_routes.len() == 1 && of_routes[0].ends_with("stored.rs"), "{of_routes:?}");
+    assert!(of_routes.len() == 1 && of_routes[0].ends_with("database.rs"), "{of_routes:?}");
 }
 
 #[test]

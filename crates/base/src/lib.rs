@@ -3,7 +3,6 @@
 
 pub mod corrections;
 pub mod corridor;
-pub mod counted;
 pub mod leeway;
 pub mod speed_profile;
 pub mod stop;
@@ -11,3 +10,4 @@ pub mod vehicle;
 pub mod verdict;
 pub mod watch;
 pub mod words;
+pub mod work_count;

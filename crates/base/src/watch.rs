@@ -102,7 +102,7 @@ pub struct TookTooLong;
 
 /// Work that has run for longer than [`Patience::name_after`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Standing {
+pub struct SlowWork {
     /// The work.
     pub work: Work,
     /// Its number among all pieces of work of this process: the same in each list.
@@ -194,14 +194,14 @@ pub fn counted() -> u64 {
 
 /// The work of all threads that has run for longer than its [`Patience::name_after`], the oldest first.
 #[must_use]
-pub fn standing() -> Vec<Standing> {
+pub fn standing() -> Vec<SlowWork> {
     let all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut long: Vec<Standing> = all
+    let mut long: Vec<SlowWork> = all
         .iter()
         .filter_map(Weak::upgrade)
         .filter_map(|running| {
             let ran = running.ran(running.patience.name_after)?;
-            Some(Standing { work: running.work, id: running.id, ran })
+            Some(SlowWork { work: running.work, id: running.id, ran })
         })
         .collect();
     long.sort_unstable_by_key(|standing| standing.id);

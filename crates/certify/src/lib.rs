@@ -8,6 +8,7 @@ use netcert_rows as rows;
 use netcert_rows::settings;
 
 mod corners;
+mod dependents;
 mod job;
 mod least;
 mod narrower;
@@ -16,16 +17,15 @@ mod paths;
 pub mod reporter;
 mod strokes;
 mod suppose;
-mod touched;
 mod turns;
 
 pub use corners::{CORNER_ANGLES_DEG, CORNER_WIDTHS_M, Corners};
+pub use dependents::{Dependents, NearNodes};
 pub use job::Job;
 pub use least::{least_of, least_that_does};
 pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, flares};
 pub use paths::{best_of, fits};
 pub use strokes::verdict;
-pub use strokes::{Outcome, by_cell, certify_network, certify_strokes, make_strokes};
+pub use strokes::{CertificationOutcome, by_cell, certify_network, certify_strokes, make_strokes};
 pub use suppose::{stroke_at_least, turn_with_kerb};
-pub use touched::{NearNodes, Touched};
 pub use turns::{TurnJob, TurnOutcome, certify_some_turns, certify_turns, make_turns, turn_verdict};

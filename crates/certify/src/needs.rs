@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use super::job::Job;
 use super::least::least_of;
 use super::paths::fits;
-use crate::corridor::{Corridor, LaidOut, StrokeCorridor, stroke_corridor};
+use crate::corridor::{Corridor, StrokeCorridor, StrokeLayout, stroke_corridor};
 use crate::network::{EdgeNo, Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
@@ -196,7 +196,7 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(Edg
         lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, strip_m(job, narrow.edge)?)).collect()
     };
     let mut searches: Vec<Vec<Search>> = lacking.iter().map(begin).collect();
-    let mut laid: FxHashMap<u32, Option<LaidOut<'_>>> = FxHashMap::default();
+    let mut laid: FxHashMap<u32, Option<StrokeLayout<'_>>> = FxHashMap::default();
     for _ in 0..ROUNDS {
         let of_stroke = |(of, lacking): (usize, &Lacking<'_>)| Probe::of(lacking.stroke.edges.start, of, &searches[of]);
         let mut probes: Vec<Probe> = lacking.iter().enumerate().flat_map(of_stroke).collect();
@@ -208,7 +208,7 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(Edg
         let alike: Vec<&[Probe]> = probes.chunk_by(|a, b| (a.stroke, a.steps) == (b.stroke, b.steps)).collect();
         let widened = |same: &&[Probe]| {
             let Probe { stroke, of, steps, .. } = same[0];
-            let lay = || LaidOut::new(job.network, lacking[of].stroke, &job.settings.corridor).ok();
+            let lay = || StrokeLayout::new(job.network, lacking[of].stroke, &job.settings.corridor).ok();
             widened(job, laid.entry(stroke).or_insert_with(lay).as_ref()?, steps as f64 / WIDTHS)
         };
         let made: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> = alike.iter().map(widened).collect();
@@ -262,7 +262,7 @@ pub fn edge_need(network: &Network, stroke: u32, edge: EdgeNo, model: &Model, se
 }
 
 /// A stroke that is nowhere narrower than a width, and the stations of its edges. `None` if it has no corridor then.
-fn widened(job: &Job<'_>, laid: &LaidOut<'_>, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
+fn widened(job: &Job<'_>, laid: &StrokeLayout<'_>, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
     let policy = job.settings.policy;
     let sections = |edge: &_| job.network.section(edge).at_least(policy, width_m);
     let made = laid.corridor(&sections, policy).ok()?;

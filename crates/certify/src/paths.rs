@@ -1,7 +1,7 @@
 //! The best path of one turn: certifies the paths that are planned, until one is safe or none is left that may be.
 
 use netcert_kernel::stet::{Course, Grounds, Model, Options, Plan, SpanResult};
-use netcert_roads::turns::{Planned, Planner, TurnCorridors, TurnPath};
+use netcert_roads::turns::{PlannedPath, TurnCorridors, TurnPath, TurnPlanner};
 
 /// Planned paths that score less than minus this, metres, are certified as they are, for the record: corrections do not make up for
 /// more.
@@ -67,7 +67,7 @@ impl<'m> LaidTurn<'m> {
     /// Paths that are known to have less leeway than `above_m` may be left out.
     pub(super) fn try_path(
         &self,
-        planned: Planned,
+        planned: PlannedPath,
         model: &Model,
         corrected: Option<&Options>,
         above_m: f64,
@@ -101,11 +101,11 @@ impl<'m> LaidTurn<'m> {
 
 /// As [`best_of`], with the plan.
 pub(super) fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
-    let (mut planner, turn) = (Planner::new(made), LaidTurn::new(made));
+    let (mut planner, turn) = (TurnPlanner::new(made), LaidTurn::new(made));
     models.iter().map(|model| best_path(&turn, &mut planner, model, options)).collect()
 }
 
-fn best_path(turn: &LaidTurn<'_>, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
+fn best_path(turn: &LaidTurn<'_>, planner: &mut TurnPlanner<'_>, model: &Model, options: &Options) -> Option<Best> {
     let mut best: Option<Best> = None;
     let mut tried: Vec<i64> = Vec::new();
     for planned in planner.plan(&model.vehicle) {
@@ -136,7 +136,7 @@ fn best_path(turn: &LaidTurn<'_>, planner: &mut Planner<'_>, model: &Model, opti
 /// Whether one of the seeds with the most room is safe. A cheap look: `true` is certified, `false` may be a path that was not tried.
 #[must_use]
 pub fn fits(made: &TurnCorridors, model: &Model, options: &Options) -> bool {
-    let seeds = Planner::new(made).best_seeds(&model.vehicle, SEEDS);
+    let seeds = TurnPlanner::new(made).best_seeds(&model.vehicle, SEEDS);
     let (mut best, turn) = (None, LaidTurn::new(made));
     seeds.iter().filter(|seed| seed.score_m >= -NEARLY_M).any(|seed| {
         turn.try_path(*seed, model, Some(options), 0.0, &mut best);

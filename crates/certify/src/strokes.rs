@@ -29,7 +29,7 @@ const GROUPS: usize = 8;
 
 /// Results of a certification other than the certificates.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Outcome {
+pub struct CertificationOutcome {
     /// One per edge of the network. Edges that were not certified have the default.
     pub measures: Vec<EdgeMeasure>,
     /// Edges by the reason why they have no corridor. `None` counts edges with a corridor.
@@ -40,7 +40,7 @@ pub struct Outcome {
     pub plans: Vec<(usize, StoredPlan)>,
 }
 
-impl Outcome {
+impl CertificationOutcome {
     /// The outcome on a network of which no stroke is certified.
     #[must_use]
     pub fn new(network: &Network) -> Self {
@@ -120,7 +120,7 @@ pub fn certify_network<E: Send>(
     job: &Job<'_>,
     reporter: &dyn Reporter,
     sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
-) -> Result<Outcome, E> {
+) -> Result<CertificationOutcome, E> {
     certify_strokes(job, &by_cell(job.network), reporter, sink)
 }
 
@@ -145,8 +145,8 @@ pub fn certify_strokes<E: Send>(
     strokes: &[u32],
     reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
-) -> Result<Outcome, E> {
-    let mut outcome = Outcome::new(job.network);
+) -> Result<CertificationOutcome, E> {
+    let mut outcome = CertificationOutcome::new(job.network);
     make_strokes(job, strokes, reporter, &|_| Ok(()), |made| outcome.add(made, &mut sink))?;
     Ok(outcome)
 }

@@ -3,7 +3,7 @@
 //! They are certified like any other result, and are no certificates: nothing says that the supposition holds.
 
 use super::paths::best_of;
-use crate::corridor::LaidOut;
+use crate::corridor::StrokeLayout;
 use crate::network::{EdgeNo, Network};
 use crate::settings::Settings;
 use crate::stet::{Model, SpanResult, certify_planned};
@@ -27,7 +27,7 @@ pub fn stroke_at_least(
     let Settings { policy, corridor, stet, .. } = settings;
     let Some(stroke) = network.strokes.get(stroke as usize) else { return Ok(Vec::new()) };
     let sections = |edge: &_| network.section(edge).at_least(*policy, width_m);
-    let laid = LaidOut::new(network, stroke, corridor);
+    let laid = StrokeLayout::new(network, stroke, corridor);
     let Ok(made) = laid.and_then(|laid| laid.corridor(&sections, *policy)) else { return Ok(Vec::new()) };
     let spans: Vec<_> = made.spans.iter().map(|span| span.stations.clone()).collect();
     let results = certify_planned(&made.corridor, model, &spans, stet, stop)?.map_or_else(Vec::new, |(_, spans)| spans);

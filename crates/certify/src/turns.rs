@@ -22,8 +22,8 @@ use crate::stet::{Model, SpanResult};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use crate::words::{Named, VerdictKind, verdict_words};
-use netcert_base::counted::{WorkCount, counted};
-use netcert_roads::turns::{LengthClass, Planned, StrokeLine, TurnFacts, TurnNo, turn_on};
+use netcert_base::work_count::{WorkCount, counted};
+use netcert_roads::turns::{LengthClass, PlannedPath, StrokeLine, TurnFacts, TurnNo, turn_on};
 
 /// Turns per batch.
 const BATCH: usize = 512;
@@ -364,7 +364,7 @@ fn plan_as_on(
             let wide = wide.get_or_insert_with(|| turn_on(job.network, turn.edges(), &here, policy, params, reach));
             let Ok(wide) = wide else { break };
             let (mut best, wide) = (None, LaidTurn::new(wide));
-            let planned = Planned { code: found.path.code, score_m: 0.0, room_m: 0.0 };
+            let planned = PlannedPath { code: found.path.code, score_m: 0.0, room_m: 0.0 };
             wide.follow_path(&found, &job.models[v], &mut best);
             if !best.as_ref().is_some_and(|best| best.result.safe()) {
                 let options = Some(&job.settings.stet);

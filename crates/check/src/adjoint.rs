@@ -170,10 +170,10 @@ mod tests {
     use crate::STEPS;
     use crate::chain::Chain;
     use crate::claim::SpanClaim;
-    use crate::drawn::{chain, unit};
-    use crate::fit::Reading;
+    use crate::fit::StationReading;
     use crate::plan;
     use crate::subject::Subject;
+    use crate::test_vehicles::{chain, unit};
     use netcert_base::corridor::{Corridor, CurvatureProfile};
 
     /// A bend of 35 m, 50 m behind a bend of `radius_m` to the other side.
@@ -187,7 +187,7 @@ mod tests {
     /// The greatest RSC of the bend of 35 m that is confirmed, millimetres, and whether there are bounds everywhere before it.
     fn most_mm(chain: &Chain, corridor: &Corridor) -> Option<(i32, bool)> {
         let centred = vec![0; plan::count(corridor.len())];
-        let subject = Subject::new(chain, corridor, plan::shift(&centred), Reading::Strict).ok()?;
+        let subject = Subject::new(chain, corridor, plan::shift(&centred), StationReading::Strict).ok()?;
         let stations = corridor.len() - 100..corridor.len() - 65;
         let confirmed = |rsc_mm: i32| {
             let rsc_m = Some(f64::from(rsc_mm) * 1e-3);

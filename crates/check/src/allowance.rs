@@ -3,7 +3,7 @@
 use crate::cell::{Cell, Corner};
 use crate::interval::Interval;
 use crate::motion::Pose;
-use crate::swept::{ABOUT, SweptVehicle};
+use crate::swept_vehicle::{ABOUT, SweptVehicle};
 
 /// Error bound of the road's own evaluation, metres: quadrature (1e-7) and rounding.
 const ROAD_M: f64 = 2e-7;

@@ -6,7 +6,7 @@ use crate::STEPS;
 use crate::fit::{FARTHEST_M, RoadError};
 use crate::hull::{Segment, bounds};
 use crate::vector::Point;
-use netcert_base::corridor::{Area, AreaSpan, Corridor};
+use netcert_base::corridor::{AreaSpan, Corridor, PlaneArea};
 
 /// Most vertices of one area.
 pub(crate) const MOST_VERTICES: usize = 100_000;
@@ -71,7 +71,7 @@ pub(crate) struct Boundary {
 }
 
 impl Boundary {
-    fn new(area: &Area, origin: Point) -> Result<Self, String> {
+    fn new(area: &PlaneArea, origin: Point) -> Result<Self, String> {
         let vertices = || area.rings.iter().flatten();
         if vertices().count() > MOST_VERTICES {
             return Err(format!("an area of {} vertices; at most {MOST_VERTICES}", vertices().count()));

@@ -4,7 +4,7 @@ use crate::UP;
 use crate::curve::CurvePoint;
 use crate::feet::{Foot, Hint, beside_m, foot_from, point};
 use crate::motion::Pose;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 
 /// Nothing is bounded where a body stands more askew to the road than of this cosine, or where normals crowd more than this.
 const LEAST_COSINE: f64 = 0.2;

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::claim::{Weight, asked_alone, weight};
 use crate::subject::Subject;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::targets::{Shortfall, Targets};
 
 /// A body that lacks as much room as it is wide is wholly outside of the road, metres. Entries of columns promise nothing there.

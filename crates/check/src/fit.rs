@@ -20,7 +20,7 @@ const TO_MIDDLE: f64 = 0.125;
 
 /// How stations are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reading {
+pub enum StationReading {
     /// A station that does not fit is an error.
     Strict,
     /// A station that does not fit is no error: nothing is confirmed on the stretch before it.
@@ -40,7 +40,7 @@ pub struct RoadError {
 /// Tests that stations form a corridor. Returns for each the error bound of the curve from there to the next one (metres),
 /// and the heading difference at its end (radians). If they are read leniently, a station that does not fit is no error: the
 /// bound of the stretch before it is infinite.
-pub(crate) fn misfits(c: &Corridor, reading: Reading) -> Result<Vec<[f64; 2]>, RoadError> {
+pub(crate) fn misfits(c: &Corridor, reading: StationReading) -> Result<Vec<[f64; 2]>, RoadError> {
     let n = c.len();
     let same = [&c.y, &c.heading, &c.curvature, &c.left_m, &c.right_m];
     if n < 2 || same.iter().any(|column| column.len() != n) {
@@ -52,7 +52,7 @@ pub(crate) fn misfits(c: &Corridor, reading: Reading) -> Result<Vec<[f64; 2]>, R
     let mut misfits = vec![[0.0; 2]; n];
     for k in 0..n {
         misfits[k.saturating_sub(1)] = match check_station(c, k) {
-            Err(wrong) if reading == Reading::Strict || !finite(c, k) => return Err(wrong),
+            Err(wrong) if reading == StationReading::Strict || !finite(c, k) => return Err(wrong),
             Err(_) => [f64::INFINITY, 0.0],
             Ok(off) => off,
         };

@@ -1,6 +1,6 @@
 //! How far every hinge and the steering lock stay from their limits (proof, section 10).
 
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::tubes::Tube;
 
 impl SweptVehicle<'_> {

@@ -11,7 +11,7 @@ use crate::cell::{Cell, Corner};
 use crate::feet::{Hint, point};
 use crate::gains::Knots;
 use crate::motion::Pose;
-use crate::swept::{ABOUT, KNOT_M, SweptVehicle};
+use crate::swept_vehicle::{ABOUT, KNOT_M, SweptVehicle};
 use crate::targets::{Shortfalls, Targets};
 use netcert_base::watch;
 

@@ -21,7 +21,7 @@
 //! | `adjoint` | the exact time-varying bound (section 6), where the filter is too loose |
 //! | `second_order`, `filter` | the second order (section 3), and the filter that finds the tubes (section 5) |
 //! | `feet` | the place of the road on whose normal a point lies |
-//! | `swept` | the vehicle swept along its road: motion and tubes, and what the adjoint has said |
+//! | `swept_vehicle` | the vehicle swept along its road: motion and tubes, and what the adjoint has said |
 //! | `sharpen` | runs the adjoint where it is wanted |
 //! | `hinges` | margins of hinges (section 10) |
 //! | `cell`, `allowance` | leeway at the corners of a cell (section 7), and what its inside may lack |
@@ -33,8 +33,8 @@
 //! | `claim` | the claims about one vehicle on one corridor, and their results |
 //! | `subject` | a vehicle on a corridor along a plan |
 //! | `limiting`, `spans`, `columns` | check limiting places, claims about spans, and columns of leeway |
-//! | `printed` | the paper's 𝒞, which decides nothing |
-//! | `drawn` | drawn vehicles and numbers, for tests |
+//! | `paper_rsc` | the paper's 𝒞, which decides nothing |
+//! | `test_vehicles` | drawn vehicles and numbers, for tests |
 //!
 //! Rounding is handled in three ways. Nominal motion, feet and kernels are *chosen* in plain `f64`: another choice
 //! would give another bound and not a wrong one, and their rounding is counted (`link::DEFECT_RAD`). *Bounds* are
@@ -51,8 +51,6 @@ mod coarse;
 mod coefficients;
 mod columns;
 mod curve;
-#[cfg(test)]
-mod drawn;
 mod feet;
 mod filter;
 mod fit;
@@ -64,26 +62,28 @@ mod leeway;
 mod limiting;
 mod link;
 mod motion;
+pub mod paper_rsc;
 pub mod plan;
 mod plane;
-pub mod printed;
 mod road;
 mod search;
 mod second_order;
 mod sharpen;
 mod spans;
 mod subject;
-mod swept;
+mod swept_vehicle;
 mod targets;
+#[cfg(test)]
+mod test_vehicles;
 mod tubes;
 mod vector;
 
 pub use chain::Chain;
 pub use claim::{Finding, Outcome, SpanClaim, Weight, finding};
-pub use fit::{Reading, RoadError};
+pub use fit::{RoadError, StationReading};
 pub use interval::Interval;
 pub use subject::Subject;
-pub use swept::SweptVehicle;
+pub use swept_vehicle::SweptVehicle;
 
 /// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
 /// into different steps. `claim` applies the tolerance, and nothing else does.

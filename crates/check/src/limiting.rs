@@ -6,7 +6,7 @@ use crate::STEPS;
 use crate::claim::{Finding, SpanClaim, Weight, finding};
 use crate::filter::Adjoint;
 use crate::subject::{FARTHEST, Subject};
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::targets::Targets;
 
 /// A body that lacks this much room folds up, or leaves the road for another leg of it, metres. The two programs follow it for different

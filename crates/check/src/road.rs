@@ -5,7 +5,7 @@
 
 use crate::areas::Areas;
 use crate::curve::{CurvePoint, curve};
-use crate::fit::{Reading, RoadError, misfits};
+use crate::fit::{RoadError, StationReading, misfits};
 use crate::vector::length;
 use netcert_base::corridor::Corridor;
 
@@ -67,7 +67,12 @@ impl Road {
     /// # Errors
     /// [`RoadError`] with the first station that does not fit. If read leniently, such a station is no error, and
     /// nothing is known of the stretch before it. Areas must be well-formed even so.
-    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, reading: Reading) -> Result<Self, RoadError> {
+    pub(crate) fn new(
+        corridor: &Corridor,
+        lead_m: f64,
+        tail_m: f64,
+        reading: StationReading,
+    ) -> Result<Self, RoadError> {
         let misfits = misfits(corridor, reading)?;
         let (n, spacing) = (corridor.len(), corridor.spacing_m);
         let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);

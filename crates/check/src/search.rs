@@ -7,7 +7,7 @@ use crate::cell::Cell;
 use crate::coarse::{LocalPoint, Slab};
 use crate::feet::Hint;
 use crate::leeway::CLOSE_M;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::targets::{Shortfall, Shortfalls, Targets};
 use netcert_base::watch;
 

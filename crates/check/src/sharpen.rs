@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::adjoint::{self, Output};
 use crate::gains::Knots;
-use crate::swept::{HISTORY_LENGTHS, KNOT_M, SweptVehicle};
+use crate::swept_vehicle::{HISTORY_LENGTHS, KNOT_M, SweptVehicle};
 
 /// Number of outputs that one run of the adjoint carries.
 const ABREAST: usize = 4;

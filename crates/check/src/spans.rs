@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::claim::{Finding, SpanClaim, TOLERANCE_RAD, Weight, asked, finding, rsc_weight, weight};
 use crate::plane::Cramped;
 use crate::subject::Subject;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::targets::{Shortfall, Targets};
 use crate::{STEPS, TOLERANCE_M};
 

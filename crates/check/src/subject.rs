@@ -5,10 +5,10 @@ use std::ops::Range;
 use crate::STEPS;
 use crate::chain::Chain;
 use crate::feet::{Foot, foot};
-use crate::fit::{Reading, RoadError};
+use crate::fit::{RoadError, StationReading};
 use crate::motion::Motion;
 use crate::road::Road;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use netcert_base::corridor::Corridor;
 
 /// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
@@ -36,7 +36,7 @@ impl<'a> Subject<'a> {
         chain: &'a Chain,
         corridor: &Corridor,
         shift: impl Fn(f64) -> f64,
-        reading: Reading,
+        reading: StationReading,
     ) -> Result<Self, RoadError> {
         let (ahead, behind) = chain.reach_m();
         let road = Road::new(

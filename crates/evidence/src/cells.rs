@@ -1,33 +1,33 @@
 //! The cells of one record as numbers and words, and the list of what is wrong with them.
 
-use super::columns::{Column, Record};
+use super::columns::{EvidenceColumn, FileRecord};
 
 /// A record whose cells are being read.
 pub(super) struct Cells {
-    pub(super) record: Record,
+    pub(super) record: FileRecord,
 }
 
 impl Cells {
-    pub(super) fn text(&self, column: Column) -> Option<&str> {
+    pub(super) fn text(&self, column: EvidenceColumn) -> Option<&str> {
         self.record.text(column)
     }
 
-    pub(super) fn owned(&self, column: Column) -> Option<String> {
+    pub(super) fn owned(&self, column: EvidenceColumn) -> Option<String> {
         self.text(column).map(str::to_owned)
     }
 
-    pub(super) fn has(&self, column: Column) -> bool {
+    pub(super) fn has(&self, column: EvidenceColumn) -> bool {
         self.text(column).is_some()
     }
 
     /// Notes what is wrong. It gives `None`, so that it can stand for the value.
-    pub(super) fn refuse<T>(&mut self, column: Column, what: impl Into<String>) -> Option<T> {
+    pub(super) fn refuse<T>(&mut self, column: EvidenceColumn, what: impl Into<String>) -> Option<T> {
         self.record.fault(column, what);
         None
     }
 
     /// Refuses all of these columns that are not empty.
-    pub(super) fn refuse_all(&mut self, columns: &[Column], what: &str) {
+    pub(super) fn refuse_all(&mut self, columns: &[EvidenceColumn], what: &str) {
         for &column in columns {
             if self.has(column) {
                 self.record.fault(column, what);
@@ -36,7 +36,7 @@ impl Cells {
     }
 
     /// An id. A double above 2^53 is written with an exponent and is none.
-    pub(super) fn id(&mut self, column: Column) -> Option<i64> {
+    pub(super) fn id(&mut self, column: EvidenceColumn) -> Option<i64> {
         let text = self.text(column)?;
         let whole = text.strip_suffix(".0").unwrap_or(text);
         if let Ok(id) = whole.parse::<i64>() {
@@ -52,7 +52,7 @@ impl Cells {
     }
 
     /// A finite number.
-    pub(super) fn number(&mut self, column: Column) -> Option<f64> {
+    pub(super) fn number(&mut self, column: EvidenceColumn) -> Option<f64> {
         let text = self.text(column)?;
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Some(number),

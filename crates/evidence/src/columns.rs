@@ -2,12 +2,12 @@
 //!
 //! Every format gives its cells as text and its geometry as a shape. What they mean is read in one place, `read.rs`.
 
-use super::error::Fault;
+use super::error::CellFault;
 use crate::shape::Shape;
 
 /// A column with a meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Column {
+pub(super) enum EvidenceColumn {
     Quantity,
     Value,
     Unit,
@@ -33,39 +33,39 @@ pub(super) enum Column {
 }
 
 /// Columns by name. The first name of a column is the one that messages use; the others mean the same.
-const NAMES: &[(&str, Column)] = &[
-    ("quantity", Column::Quantity),
-    ("value", Column::Value),
-    ("unit", Column::Unit),
-    ("sigma", Column::Sigma),
-    ("source", Column::Source),
-    ("date", Column::Date),
-    ("licence", Column::Licence),
-    ("way_id", Column::WayId),
-    ("from_node", Column::FromNode),
-    ("to_node", Column::ToNode),
-    ("edge_id", Column::EdgeId),
-    ("junction", Column::Junction),
-    ("from_edge", Column::FromEdge),
-    ("to_edge", Column::ToEdge),
-    ("direction", Column::Direction),
-    ("name", Column::Name),
-    ("note", Column::Note),
-    ("id", Column::Id),
-    ("vehicle", Column::Vehicle),
-    ("geometry", Column::Geometry),
-    ("lon", Column::Lon),
-    ("lat", Column::Lat),
-    ("what", Column::Quantity),
-    ("uncertainty", Column::Sigma),
-    ("license", Column::Licence),
-    ("node", Column::Junction),
-    ("geom", Column::Geometry),
-    ("wkb_geometry", Column::Geometry),
-    ("wkt", Column::Geometry),
+const NAMES: &[(&str, EvidenceColumn)] = &[
+    ("quantity", EvidenceColumn::Quantity),
+    ("value", EvidenceColumn::Value),
+    ("unit", EvidenceColumn::Unit),
+    ("sigma", EvidenceColumn::Sigma),
+    ("source", EvidenceColumn::Source),
+    ("date", EvidenceColumn::Date),
+    ("licence", EvidenceColumn::Licence),
+    ("way_id", EvidenceColumn::WayId),
+    ("from_node", EvidenceColumn::FromNode),
+    ("to_node", EvidenceColumn::ToNode),
+    ("edge_id", EvidenceColumn::EdgeId),
+    ("junction", EvidenceColumn::Junction),
+    ("from_edge", EvidenceColumn::FromEdge),
+    ("to_edge", EvidenceColumn::ToEdge),
+    ("direction", EvidenceColumn::Direction),
+    ("name", EvidenceColumn::Name),
+    ("note", EvidenceColumn::Note),
+    ("id", EvidenceColumn::Id),
+    ("vehicle", EvidenceColumn::Vehicle),
+    ("geometry", EvidenceColumn::Geometry),
+    ("lon", EvidenceColumn::Lon),
+    ("lat", EvidenceColumn::Lat),
+    ("what", EvidenceColumn::Quantity),
+    ("uncertainty", EvidenceColumn::Sigma),
+    ("license", EvidenceColumn::Licence),
+    ("node", EvidenceColumn::Junction),
+    ("geom", EvidenceColumn::Geometry),
+    ("wkb_geometry", EvidenceColumn::Geometry),
+    ("wkt", EvidenceColumn::Geometry),
 ];
 
-impl Column {
+impl EvidenceColumn {
     pub(super) fn name(self) -> &'static str {
         NAMES.iter().find(|(_, column)| *column == self).map_or("", |(name, _)| name)
     }
@@ -78,7 +78,7 @@ impl Column {
 
 /// Whether a column is a geometry by its name. Beside a format's own geometry it is a copy that GDAL left there.
 pub(super) fn is_geometry(name: &str) -> bool {
-    Column::named(name) == Some(Column::Geometry)
+    EvidenceColumn::named(name) == Some(EvidenceColumn::Geometry)
 }
 
 /// Whether a column is for other programs: feature ids of GDAL, and what begins with `_`.
@@ -87,11 +87,11 @@ fn ignored(name: &str) -> bool {
 }
 
 /// The meaning of each column of a header; `None` for those to ignore.
-pub(super) fn columns<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Vec<Option<Column>>, String> {
-    let mut found: Vec<Option<Column>> = Vec::new();
+pub(super) fn columns<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Vec<Option<EvidenceColumn>>, String> {
+    let mut found: Vec<Option<EvidenceColumn>> = Vec::new();
     let mut unknown = Vec::new();
     for name in names {
-        let column = Column::named(name);
+        let column = EvidenceColumn::named(name);
         if column.is_none() && !ignored(name.trim()) {
             unknown.push(format!("`{}`", name.trim().escape_debug()));
         }
@@ -115,23 +115,23 @@ fn unknown_columns(unknown: &[String]) -> String {
 
 /// One record of a file.
 #[derive(Debug, Default)]
-pub(super) struct Record {
-    /// As [`super::Row::number`].
+pub(super) struct FileRecord {
+    /// As [`super::MeasurementRow::number`].
     pub(super) number: u64,
     /// Cells that are not empty.
-    pub(super) cells: Vec<(Column, String)>,
+    pub(super) cells: Vec<(EvidenceColumn, String)>,
     pub(super) shape: Option<Shape>,
     /// What the reader of the format found faulty.
-    pub(super) faults: Vec<Fault>,
+    pub(super) faults: Vec<CellFault>,
 }
 
-impl Record {
+impl FileRecord {
     pub(super) fn new(number: u64) -> Self {
         Self { number, ..Self::default() }
     }
 
     /// Adds a cell. Cells of space alone are empty.
-    pub(super) fn set(&mut self, column: Column, text: &str) {
+    pub(super) fn set(&mut self, column: EvidenceColumn, text: &str) {
         let text = text.trim();
         if !text.is_empty() {
             self.cells.push((column, text.to_owned()));
@@ -142,16 +142,16 @@ impl Record {
     pub(super) fn set_shape(&mut self, shape: Result<Option<Shape>, String>) {
         match shape {
             Ok(shape) => self.shape = shape,
-            Err(what) => self.fault(Column::Geometry, what),
+            Err(what) => self.fault(EvidenceColumn::Geometry, what),
         }
     }
 
-    pub(super) fn text(&self, column: Column) -> Option<&str> {
+    pub(super) fn text(&self, column: EvidenceColumn) -> Option<&str> {
         self.cells.iter().find(|cell| cell.0 == column).map(|cell| cell.1.as_str())
     }
 
-    pub(super) fn fault(&mut self, column: Column, what: impl Into<String>) {
-        self.faults.push(Fault { row: self.number, column: column.name(), what: what.into() });
+    pub(super) fn fault(&mut self, column: EvidenceColumn, what: impl Into<String>) {
+        self.faults.push(CellFault { row: self.number, column: column.name(), what: what.into() });
     }
 }
 

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// What is wrong with one cell.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    /// Number of the row, as [`super::Row::number`].
+pub struct CellFault {
+    /// Number of the row, as [`super::MeasurementRow::number`].
     pub row: u64,
     /// The column.
     pub column: &'static str,
@@ -16,7 +16,7 @@ pub struct Fault {
     pub what: String,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for CellFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "row {}: {}: {}", self.row, self.column, self.what)
     }
@@ -48,14 +48,14 @@ pub enum EvidenceError {
         /// The file.
         path: PathBuf,
         /// Everything that is wrong, in the order of the rows; at least one.
-        faults: Vec<Fault>,
+        faults: Vec<CellFault>,
     },
 }
 
 /// Faults that a message shows.
 const SHOWN: usize = 20;
 
-fn listed(path: &Path, faults: &[Fault]) -> String {
+fn listed(path: &Path, faults: &[CellFault]) -> String {
     let lines: Vec<String> = faults.iter().take(SHOWN).map(|fault| format!("{}:{fault}", path.display())).collect();
     let mut rows: Vec<u64> = faults.iter().map(|fault| fault.row).collect();
     rows.dedup();

@@ -17,17 +17,19 @@ mod places;
 mod read;
 mod register;
 mod row;
-mod stored;
 mod surface;
+mod table_columns;
 #[cfg(test)]
 mod tests;
 mod values;
 
-pub use error::{EvidenceError, Fault};
+pub use error::{CellFault, EvidenceError};
 pub use matching::{Match, match_rows};
 pub use read::{read, read_geojson};
 pub use register::Edges;
-pub use register::{Conflict, Decision, Entry, State, Target, Usage, decide, entries, match_again, without_doubles};
-pub use row::{Along, Place, Quantity, Row, Value};
-pub use stored::{Columns, parts};
+pub use register::{
+    Conflict, Decision, Entry, MeasurementTarget, State, Usage, decide, entries, match_again, without_doubles,
+};
+pub use row::{Along, MeasurementRow, Place, Quantity, Value};
 pub use surface::{Counted, surface};
+pub use table_columns::{Columns, parts};

@@ -4,7 +4,7 @@
 //! contradict each other.
 
 use super::cells::Cells;
-use super::columns::Column;
+use super::columns::EvidenceColumn;
 use super::row::{Along, Place, Quantity};
 use crate::osm::{LonLat, NodeId};
 use crate::shape::{self, Shape};
@@ -27,7 +27,7 @@ pub(super) fn place(cells: &mut Cells, quantity: Quantity) -> Option<(Place, Opt
         (None, Some(shape)) => (shape, None),
         (None, None) => {
             let what = "no place; give `way_id`, `edge_id`, `junction`, `lon` and `lat`, or a geometry";
-            return cells.refuse(Column::Geometry, what);
+            return cells.refuse(EvidenceColumn::Geometry, what);
         }
     };
     Some((fitting(cells, quantity, place)?, begins))
@@ -35,36 +35,36 @@ pub(super) fn place(cells: &mut Cells, quantity: Quantity) -> Option<(Place, Opt
 
 /// Makes `lon` and `lat` the row's geometry.
 fn point_of_columns(cells: &mut Cells) -> Option<()> {
-    let (lon, lat) = (cells.has(Column::Lon), cells.has(Column::Lat));
+    let (lon, lat) = (cells.has(EvidenceColumn::Lon), cells.has(EvidenceColumn::Lat));
     match (lon, lat) {
         (false, false) => return Some(()),
-        (true, false) => return cells.refuse(Column::Lat, "is empty, and `lon` is not; give both"),
-        (false, true) => return cells.refuse(Column::Lon, "is empty, and `lat` is not; give both"),
+        (true, false) => return cells.refuse(EvidenceColumn::Lat, "is empty, and `lon` is not; give both"),
+        (false, true) => return cells.refuse(EvidenceColumn::Lon, "is empty, and `lat` is not; give both"),
         (true, true) => {}
     }
     if cells.record.shape.is_some() {
-        return cells.refuse(Column::Lon, "the row has a geometry, too; keep one of them");
+        return cells.refuse(EvidenceColumn::Lon, "the row has a geometry, too; keep one of them");
     }
-    let (lon, lat) = (cells.number(Column::Lon), cells.number(Column::Lat));
+    let (lon, lat) = (cells.number(EvidenceColumn::Lon), cells.number(EvidenceColumn::Lat));
     cells.record.shape = Some(Shape::Point([lon?, lat?]));
     Some(())
 }
 
 /// The place that ids give.
 fn by_id(cells: &mut Cells) -> Option<Place> {
-    let way_id = cells.id(Column::WayId);
-    let edge = cells.id(Column::EdgeId);
-    let junction = cells.id(Column::Junction).map(NodeId::new);
-    let nodes = pair(cells, [Column::FromNode, Column::ToNode]).map(|nodes| nodes.map(NodeId::new));
-    let edges = pair(cells, [Column::FromEdge, Column::ToEdge]);
-    if junction.is_some() && (cells.has(Column::WayId) || cells.has(Column::EdgeId)) {
-        return cells.refuse(Column::Junction, "the row names a way or edge, too; keep one of them");
+    let way_id = cells.id(EvidenceColumn::WayId);
+    let edge = cells.id(EvidenceColumn::EdgeId);
+    let junction = cells.id(EvidenceColumn::Junction).map(NodeId::new);
+    let nodes = pair(cells, [EvidenceColumn::FromNode, EvidenceColumn::ToNode]).map(|nodes| nodes.map(NodeId::new));
+    let edges = pair(cells, [EvidenceColumn::FromEdge, EvidenceColumn::ToEdge]);
+    if junction.is_some() && (cells.has(EvidenceColumn::WayId) || cells.has(EvidenceColumn::EdgeId)) {
+        return cells.refuse(EvidenceColumn::Junction, "the row names a way or edge, too; keep one of them");
     }
     if nodes.is_some() && (way_id.is_none() || edge.is_some()) {
-        return cells.refuse(Column::FromNode, "part of a way needs `way_id`, and no `edge_id`");
+        return cells.refuse(EvidenceColumn::FromNode, "part of a way needs `way_id`, and no `edge_id`");
     }
     if edges.is_some() && junction.is_none() {
-        return cells.refuse(Column::FromEdge, "a corner needs its node in `junction`");
+        return cells.refuse(EvidenceColumn::FromEdge, "a corner needs its node in `junction`");
     }
     let at_edge = edge.map(Place::Edge);
     let at_way = way_id.map(|way_id| Place::Way { way_id, nodes });
@@ -72,7 +72,7 @@ fn by_id(cells: &mut Cells) -> Option<Place> {
 }
 
 /// Two ids that belong together.
-fn pair(cells: &mut Cells, columns: [Column; 2]) -> Option<[i64; 2]> {
+fn pair(cells: &mut Cells, columns: [EvidenceColumn; 2]) -> Option<[i64; 2]> {
     let [a, b] = columns;
     for (one, other) in [(a, b), (b, a)] {
         if cells.has(one) && !cells.has(other) {
@@ -100,8 +100,8 @@ fn drawn(cells: &mut Cells, shape: &Shape, quantity: Quantity) -> Option<Place> 
     }
 }
 
-fn column_of(cells: &Cells) -> Column {
-    if cells.has(Column::Lon) { Column::Lon } else { Column::Geometry }
+fn column_of(cells: &Cells) -> EvidenceColumn {
+    if cells.has(EvidenceColumn::Lon) { EvidenceColumn::Lon } else { EvidenceColumn::Geometry }
 }
 
 fn first(place: &Place) -> Option<LonLat> {
@@ -120,16 +120,16 @@ fn fitting(cells: &mut Cells, quantity: Quantity, place: Place) -> Option<Place>
     match quantity {
         Quantity::KerbRadius if road => {
             let what = format!("a `{name}` belongs to a junction; give `junction`, or a point");
-            cells.refuse(Column::Quantity, what)
+            cells.refuse(EvidenceColumn::Quantity, what)
         }
         Quantity::Surface if road => {
             let what = format!("a `{name}` belongs to a junction; leave `way_id` and `edge_id` empty");
-            cells.refuse(Column::Quantity, what)
+            cells.refuse(EvidenceColumn::Quantity, what)
         }
         Quantity::KerbRadius | Quantity::Surface | Quantity::DrivableBy => Some(place),
         _ if junction => {
             let what = format!("a `{name}` belongs to a road; give `way_id`, `edge_id`, a line or a point");
-            cells.refuse(Column::Quantity, what)
+            cells.refuse(EvidenceColumn::Quantity, what)
         }
         _ => Some(place),
     }
@@ -137,14 +137,14 @@ fn fitting(cells: &mut Cells, quantity: Quantity, place: Place) -> Option<Place>
 
 /// The direction of travel of a row.
 pub(super) fn along(cells: &mut Cells, place: Option<&Place>) -> Option<Along> {
-    let Some(text) = cells.text(Column::Direction) else { return Some(Along::Both) };
+    let Some(text) = cells.text(EvidenceColumn::Direction) else { return Some(Along::Both) };
     let Some(along) = Along::named(&text.to_ascii_lowercase()) else {
         let what = format!("`{}` is no direction; known are both, forward, backward", text.escape_debug());
-        return cells.refuse(Column::Direction, what);
+        return cells.refuse(EvidenceColumn::Direction, what);
     };
     let directed = matches!(place, Some(Place::Way { .. } | Place::Line(_) | Place::Point(_)) | None);
     if along != Along::Both && !directed {
-        return cells.refuse(Column::Direction, "only ways, lines and points need one; leave it empty");
+        return cells.refuse(EvidenceColumn::Direction, "only ways, lines and points need one; leave it empty");
     }
     Some(along)
 }

@@ -5,10 +5,10 @@
 use std::path::Path;
 
 use super::cells::Cells;
-use super::columns::{Column, Record};
-use super::error::{EvidenceError, Failure, Fault};
+use super::columns::{EvidenceColumn, FileRecord};
+use super::error::{CellFault, EvidenceError, Failure};
 use super::formats;
-use super::row::{Quantity, Row};
+use super::row::{MeasurementRow, Quantity};
 use super::{places, values};
 use crate::words::Named as _;
 
@@ -16,7 +16,7 @@ use crate::words::Named as _;
 ///
 /// # Errors
 /// The file cannot be read, or something in it is faulty. All faulty rows are named.
-pub fn read(path: &Path) -> Result<Vec<Row>, EvidenceError> {
+pub fn read(path: &Path) -> Result<Vec<MeasurementRow>, EvidenceError> {
     let records = formats::records(path).map_err(|failure| failure.at(path))?;
     rows(path, records)
 }
@@ -25,25 +25,25 @@ pub fn read(path: &Path) -> Result<Vec<Row>, EvidenceError> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_geojson(name: &str, bytes: &[u8]) -> Result<Vec<Row>, EvidenceError> {
+pub fn read_geojson(name: &str, bytes: &[u8]) -> Result<Vec<MeasurementRow>, EvidenceError> {
     let path = Path::new(name);
     let records = formats::geojson(bytes).map_err(|failure| failure.at(path))?;
     rows(path, records)
 }
 
 /// The rows of all records, or everything that is wrong with them.
-fn rows(path: &Path, records: Vec<Record>) -> Result<Vec<Row>, EvidenceError> {
+fn rows(path: &Path, records: Vec<FileRecord>) -> Result<Vec<MeasurementRow>, EvidenceError> {
     if records.is_empty() {
         return Err(Failure::File("has no rows; nothing was read".to_owned()).at(path));
     }
     let mut faults = Vec::new();
     let rows = records.into_iter().filter_map(|record| row(record).map_err(|found| faults.extend(found)).ok());
-    let rows: Vec<Row> = rows.collect();
+    let rows: Vec<MeasurementRow> = rows.collect();
     if faults.is_empty() { Ok(rows) } else { Err(EvidenceError::Rows { path: path.to_owned(), faults }) }
 }
 
 /// The row of a record, or everything that is wrong with it.
-fn row(record: Record) -> Result<Row, Vec<Fault>> {
+fn row(record: FileRecord) -> Result<MeasurementRow, Vec<CellFault>> {
     let mut cells = Cells { record };
     let row = assemble(&mut cells);
     let faults = cells.record.faults;
@@ -53,7 +53,7 @@ fn row(record: Record) -> Result<Row, Vec<Fault>> {
     }
 }
 
-fn assemble(cells: &mut Cells) -> Option<Row> {
+fn assemble(cells: &mut Cells) -> Option<MeasurementRow> {
     let quantity = quantity(cells);
     let source = source(cells);
     let date = date(cells);
@@ -63,46 +63,46 @@ fn assemble(cells: &mut Cells) -> Option<Row> {
     let place = places::place(cells, quantity);
     let along = places::along(cells, place.as_ref().map(|place| &place.0));
     let ((value, sigma), (place, at)) = (value?, place?);
-    Some(Row {
+    Some(MeasurementRow {
         number: cells.record.number,
-        id: cells.owned(Column::Id),
+        id: cells.owned(EvidenceColumn::Id),
         quantity,
         value,
         sigma,
         along: along?,
         place,
-        way_id: cells.id(Column::WayId),
+        way_id: cells.id(EvidenceColumn::WayId),
         at,
         source: source?,
         date,
-        licence: cells.owned(Column::Licence),
-        name: cells.owned(Column::Name),
-        note: cells.owned(Column::Note),
+        licence: cells.owned(EvidenceColumn::Licence),
+        name: cells.owned(EvidenceColumn::Name),
+        note: cells.owned(EvidenceColumn::Note),
     })
 }
 
 fn quantity(cells: &mut Cells) -> Option<Quantity> {
-    let text = cells.owned(Column::Quantity).unwrap_or_default();
+    let text = cells.owned(EvidenceColumn::Quantity).unwrap_or_default();
     let found = Quantity::named(&text.to_ascii_lowercase());
     if found.is_some() {
         return found;
     }
     let known = Quantity::ALL.iter().map(|quantity| quantity.name()).collect::<Vec<_>>().join(", ");
     let found = if text.is_empty() { "is empty".to_owned() } else { format!("`{}` is none", text.escape_debug()) };
-    cells.refuse(Column::Quantity, format!("{found}; known are {known}"))
+    cells.refuse(EvidenceColumn::Quantity, format!("{found}; known are {known}"))
 }
 
 fn source(cells: &mut Cells) -> Option<String> {
-    let source = cells.owned(Column::Source);
-    source.or_else(|| cells.refuse(Column::Source, "is empty; say who measured it, or what it was taken from"))
+    let source = cells.owned(EvidenceColumn::Source);
+    source.or_else(|| cells.refuse(EvidenceColumn::Source, "is empty; say who measured it, or what it was taken from"))
 }
 
 /// The day of the measurement. Whether it is in the past is not asked: nothing here has a clock.
 fn date(cells: &mut Cells) -> Option<String> {
-    let text = cells.owned(Column::Date)?;
+    let text = cells.owned(EvidenceColumn::Date)?;
     let day = jiff::civil::Date::strptime("%Y-%m-%d", &text).ok().filter(|day| day.to_string() == text);
     if day.is_some() {
         return Some(text);
     }
-    cells.refuse(Column::Date, format!("`{}` is no day; write it like 2026-05-31", text.escape_debug()))
+    cells.refuse(EvidenceColumn::Date, format!("`{}` is no day; write it like 2026-05-31", text.escape_debug()))
 }

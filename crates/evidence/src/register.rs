@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::matching::{Match, match_rows};
-use super::row::{Quantity, Row};
+use super::row::{MeasurementRow, Quantity};
 use super::surface::Counted;
 use crate::network::{Edge, EdgeNo, Network, Pieces, Site, pieces};
 use crate::osm::NodeId;
@@ -43,7 +43,7 @@ named!(Usage { Counts = "counts", Superseded = "superseded", Kept = "kept" });
 
 /// A place of the network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
+pub enum MeasurementTarget {
     /// `edge_id`
     Edge(i64),
     /// A junction, or one corner of it.
@@ -65,13 +65,13 @@ pub struct Entry {
     /// Name of the file that it came from.
     pub file: String,
     /// The measurement.
-    pub row: Row,
+    pub row: MeasurementRow,
     /// Whether its place was found.
     pub state: State,
     /// Why not, or why it is not used.
     pub why: Option<String>,
     /// Its places, each with whether it counts there.
-    pub places: Vec<(Target, bool)>,
+    pub places: Vec<(MeasurementTarget, bool)>,
 }
 
 impl Entry {
@@ -107,7 +107,7 @@ impl Entry {
     }
 
     /// Its places without whether they count.
-    pub fn targets(&self) -> impl Iterator<Item = Target> + '_ {
+    pub fn targets(&self) -> impl Iterator<Item = MeasurementTarget> + '_ {
         self.places.iter().map(|place| place.0)
     }
 
@@ -115,12 +115,12 @@ impl Entry {
         let id = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0, |edge| edge.id);
         let (state, targets, why) = match found {
             Match::Edges(edges) => {
-                (State::Matched, edges.into_iter().map(|edge| Target::Edge(id(edge))).collect(), None)
+                (State::Matched, edges.into_iter().map(|edge| MeasurementTarget::Edge(id(edge))).collect(), None)
             }
             Match::Corner { node, edges } => {
-                (State::Matched, vec![Target::Corner { node, edges: edges.map(|pair| pair.map(id)) }], None)
+                (State::Matched, vec![MeasurementTarget::Corner { node, edges: edges.map(|pair| pair.map(id)) }], None)
             }
-            Match::Area(nodes) => (State::Matched, nodes.into_iter().map(Target::Area).collect(), None),
+            Match::Area(nodes) => (State::Matched, nodes.into_iter().map(MeasurementTarget::Area).collect(), None),
             Match::Unmatched(why) => (State::Unmatched, Vec::new(), Some(why)),
             Match::Ambiguous(why) => (State::Ambiguous, Vec::new(), Some(why)),
         };
@@ -132,9 +132,9 @@ impl Entry {
 
 /// Rows as new entries, numbered from `first` on, with their places in a network. Which of them count is not decided yet.
 #[must_use]
-pub fn entries(network: &Network, file: &str, rows: Vec<Row>, first: i64) -> Vec<Entry> {
+pub fn entries(network: &Network, file: &str, rows: Vec<MeasurementRow>, first: i64) -> Vec<Entry> {
     let found = match_rows(network, &rows);
-    let entry = |((no, row), found): ((i64, Row), Match)| {
+    let entry = |((no, row), found): ((i64, MeasurementRow), Match)| {
         let file = file.to_owned();
         let mut entry = Entry { no, file, row, state: State::Unmatched, why: None, places: Vec::new() };
         entry.set(found, network);
@@ -148,7 +148,7 @@ pub fn match_again(network: &Network, entries: &mut [Entry]) {
     if entries.is_empty() {
         return;
     }
-    let rows: Vec<Row> = entries.iter().map(|entry| entry.row.clone()).collect();
+    let rows: Vec<MeasurementRow> = entries.iter().map(|entry| entry.row.clone()).collect();
     for (entry, found) in entries.iter_mut().zip(match_rows(network, &rows)) {
         entry.set(found, network);
     }
@@ -157,7 +157,10 @@ pub fn match_again(network: &Network, entries: &mut [Entry]) {
 /// The rows that are not in the register yet, and those that are, each with the number that the register has for it. A row that a
 /// file has twice is kept once; its double has no number yet.
 #[must_use]
-pub fn without_doubles(register: &[Entry], rows: Vec<Row>) -> (Vec<Row>, Vec<(Row, Option<i64>)>) {
+pub fn without_doubles(
+    register: &[Entry],
+    rows: Vec<MeasurementRow>,
+) -> (Vec<MeasurementRow>, Vec<(MeasurementRow, Option<i64>)>) {
     let mut known: FxHashMap<String, Option<i64>> =
         register.iter().map(|entry| (content(&entry.row), Some(entry.no))).collect();
     let (mut new, mut doubles) = (Vec::new(), Vec::new());
@@ -175,8 +178,8 @@ pub fn without_doubles(register: &[Entry], rows: Vec<Row>) -> (Vec<Row>, Vec<(Ro
 }
 
 /// All that a row says. Where it stood in its file does not matter.
-fn content(row: &Row) -> String {
-    format!("{:?}", Row { number: 0, ..row.clone() })
+fn content(row: &MeasurementRow) -> String {
+    format!("{:?}", MeasurementRow { number: 0, ..row.clone() })
 }
 
 /// A contradiction between a measurement and another one, or the map.
@@ -320,7 +323,7 @@ fn against_map(network: &Network, edges: &Edges<'_>, entry: &Entry) -> Option<Co
     let (mut places, mut unreadable, mut least, mut most) = (0, 0, f64::INFINITY, f64::NEG_INFINITY);
     let (quantity, lower) = (entry.row.quantity, entry.row.lower()?);
     for (target, _) in entry.places.iter().filter(|place| place.1) {
-        let Target::Edge(id) = *target else { continue };
+        let MeasurementTarget::Edge(id) = *target else { continue };
         match edges.of_id(id).and_then(|edge| tagged(network, edge, quantity)) {
             Some(Tagged::Value(value)) if (value - lower).abs() >= 0.01 => {
                 places += 1;
@@ -367,13 +370,13 @@ pub struct Edges<'n> {
 
 impl<'n> Edges<'n> {
     /// Looks the targets' edges up.
-    pub fn of(network: &'n Network, targets: impl Iterator<Item = Target>) -> Self {
+    pub fn of(network: &'n Network, targets: impl Iterator<Item = MeasurementTarget>) -> Self {
         let mut named = FxHashSet::default();
         for target in targets {
             match target {
-                Target::Edge(id) => named.extend([id]),
-                Target::Corner { edges, .. } => named.extend(edges.into_iter().flatten()),
-                Target::Area(_) => {}
+                MeasurementTarget::Edge(id) => named.extend([id]),
+                MeasurementTarget::Corner { edges, .. } => named.extend(edges.into_iter().flatten()),
+                MeasurementTarget::Area(_) => {}
             }
         }
         let indices = if named.is_empty() {
@@ -390,45 +393,45 @@ impl<'n> Edges<'n> {
     }
 
     /// `None` if the network does not have the place.
-    fn object(&self, target: Target) -> Option<MeasuredObject> {
+    fn object(&self, target: MeasurementTarget) -> Option<MeasuredObject> {
         match target {
-            Target::Edge(id) => self.of_id(id).map(|edge| MeasuredObject::Edge(edge.id)),
-            Target::Corner { node, edges: None } => Some(MeasuredObject::Corner(node, None)),
-            Target::Corner { node, edges: Some([a, b]) } => {
+            MeasurementTarget::Edge(id) => self.of_id(id).map(|edge| MeasuredObject::Edge(edge.id)),
+            MeasurementTarget::Corner { node, edges: None } => Some(MeasuredObject::Corner(node, None)),
+            MeasurementTarget::Corner { node, edges: Some([a, b]) } => {
                 Some(MeasuredObject::Corner(node, Some(pieces([self.of_id(a)?, self.of_id(b)?]))))
             }
-            Target::Area(node) => Some(MeasuredObject::Area(node)),
+            MeasurementTarget::Area(node) => Some(MeasuredObject::Area(node)),
         }
     }
 
     /// Whether the network has the place.
-    pub fn has(&self, target: Target) -> bool {
+    pub fn has(&self, target: MeasurementTarget) -> bool {
         self.object(target).is_some()
     }
 
     /// The site of measurements that count: at most one for each place and quantity.
-    pub fn site(&self, counting: impl Iterator<Item = (Quantity, Target, Counted)>) -> Site {
+    pub fn site(&self, counting: impl Iterator<Item = (Quantity, MeasurementTarget, Counted)>) -> Site {
         let mut site = Site::default();
         let mut widths_m: FxHashMap<i64, [Option<f64>; 3]> = FxHashMap::default();
         for (quantity, target, counted) in counting {
             let lower = match counted {
                 Counted::Number(lower) => lower,
                 Counted::Surface(rings) => {
-                    if let Target::Area(node) = target {
+                    if let MeasurementTarget::Area(node) = target {
                         rings.into_iter().for_each(|ring| site.add_surface(node, ring));
                     }
                     continue;
                 }
             };
             match (quantity, target) {
-                (Quantity::MaxHeight | Quantity::MaxWeight, Target::Edge(id)) => {
+                (Quantity::MaxHeight | Quantity::MaxWeight, MeasurementTarget::Edge(id)) => {
                     let Some(edge) = self.of_id(id) else { continue };
                     let limits = site.limits_mut(edge);
                     let slot =
                         if quantity == Quantity::MaxHeight { &mut limits.height_m } else { &mut limits.weight_t };
                     *slot = Some(lower as f32);
                 }
-                (Quantity::KerbRadius, Target::Corner { node, edges }) => {
+                (Quantity::KerbRadius, MeasurementTarget::Corner { node, edges }) => {
                     let edges = edges.map(|pair| pair.map(|id| self.of_id(id)));
                     match edges {
                         None => site.set_kerb(node, None, lower),
@@ -436,7 +439,7 @@ impl<'n> Edges<'n> {
                         Some(_) => {}
                     }
                 }
-                (_, Target::Edge(id)) => {
+                (_, MeasurementTarget::Edge(id)) => {
                     if let Some(policy) = policy(quantity) {
                         widths_m.entry(id).or_default()[policy as usize] = Some(lower);
                     }

@@ -93,7 +93,7 @@ named!(Along { Both = "both", Forward = "forward", Backward = "backward" });
 
 /// One measurement.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct MeasurementRow {
     /// Number of the row as people count. In CSV and GeoJSON text sequences it is the line, so that the first row of data in a
     /// CSV file is 2. Elsewhere rows count from 1.
     pub number: u64,
@@ -128,7 +128,7 @@ pub struct Row {
 /// 95 % of a normal distribution lie above its mean less so many standard deviations.
 pub(super) const ONE_SIDED_95: f64 = 1.64;
 
-impl Row {
+impl MeasurementRow {
     /// What counts, metres or tonnes: value − 1.64 σ (95 %, one-sided), but at least 0. `None` if the value is no number.
     #[must_use]
     pub fn lower(&self) -> Option<f64> {

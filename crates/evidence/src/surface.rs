@@ -2,7 +2,7 @@
 
 use geo::{Buffer as _, LineString, Polygon};
 
-use super::row::{ONE_SIDED_95, Quantity, Row, Value};
+use super::row::{MeasurementRow, ONE_SIDED_95, Quantity, Value};
 use crate::osm::LonLat;
 
 /// What counts of a measurement.
@@ -17,7 +17,7 @@ pub enum Counted {
 /// Metres in a degree of latitude. It may be a hundredth wrong: distances on a junction are short.
 const DEGREE_M: f64 = 111_200.0;
 
-impl Row {
+impl MeasurementRow {
     /// What certificates use of the measurement: a number less the uncertainty, or a surface drawn in by it. `None` if nothing is left, if
     /// the surface has holes, or if it names a vehicle.
     pub fn counted(&self) -> Option<Counted> {

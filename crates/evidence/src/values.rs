@@ -1,7 +1,7 @@
 //! Value, unit and uncertainty of a row, with the bounds beyond which units must have been mixed up.
 
 use super::cells::Cells;
-use super::columns::Column;
+use super::columns::EvidenceColumn;
 use super::row::{Quantity, Value};
 use crate::shape::{self, Shape};
 use crate::words::Named as _;
@@ -63,61 +63,61 @@ const MOST_OUTLINE_M: f64 = 20.0;
 /// The value of a row and its standard uncertainty. That of a surface is in metres, of its outline.
 pub(super) fn value(cells: &mut Cells, quantity: Quantity) -> Option<(Value, f64)> {
     if quantity != Quantity::DrivableBy {
-        cells.refuse_all(&[Column::Vehicle], "belongs to `drivable_by`; leave it empty here");
+        cells.refuse_all(&[EvidenceColumn::Vehicle], "belongs to `drivable_by`; leave it empty here");
     }
     match bounds(quantity) {
         Some(bounds) => measured(cells, quantity, &bounds),
         None => {
             let what = format!("`{}` takes none; leave it empty", quantity.name());
-            cells.refuse_all(&[Column::Value, Column::Unit], &what);
+            cells.refuse_all(&[EvidenceColumn::Value, EvidenceColumn::Unit], &what);
             if quantity == Quantity::Surface {
                 let (value, sigma) = (surface(cells), uncertainty(cells));
                 let (value, sigma) = (value?, sigma?);
                 if sigma > MOST_OUTLINE_M {
                     let what = format!("{sigma} m is no uncertainty of an outline; give at most {MOST_OUTLINE_M} m");
-                    return cells.refuse(Column::Sigma, what);
+                    return cells.refuse(EvidenceColumn::Sigma, what);
                 }
                 return Some((value, sigma));
             }
-            cells.refuse_all(&[Column::Sigma], &what);
+            cells.refuse_all(&[EvidenceColumn::Sigma], &what);
             vehicle(cells).map(|value| (value, 0.0))
         }
     }
 }
 
 fn vehicle(cells: &mut Cells) -> Option<Value> {
-    match cells.owned(Column::Vehicle) {
+    match cells.owned(EvidenceColumn::Vehicle) {
         Some(vehicle) => Some(Value::Vehicle(vehicle)),
-        None => cells.refuse(Column::Vehicle, "is empty; give the id of the vehicle (`netcert vehicles list`)"),
+        None => cells.refuse(EvidenceColumn::Vehicle, "is empty; give the id of the vehicle (`netcert vehicles list`)"),
     }
 }
 
 fn surface(cells: &mut Cells) -> Option<Value> {
     let Some(Shape::Polygon(rings)) = &cells.record.shape else {
-        return cells.refuse(Column::Geometry, "a `surface` needs a polygon");
+        return cells.refuse(EvidenceColumn::Geometry, "a `surface` needs a polygon");
     };
     match shape::rings(rings) {
         Ok(rings) => Some(Value::Polygon(rings)),
-        Err(what) => cells.refuse(Column::Geometry, what),
+        Err(what) => cells.refuse(EvidenceColumn::Geometry, what),
     }
 }
 
 fn measured(cells: &mut Cells, quantity: Quantity, bounds: &Bounds) -> Option<(Value, f64)> {
-    if !cells.has(Column::Value) {
-        return cells.refuse(Column::Value, "is empty; give what was measured, or leave out the row");
+    if !cells.has(EvidenceColumn::Value) {
+        return cells.refuse(EvidenceColumn::Value, "is empty; give what was measured, or leave out the row");
     }
     let size = unit(cells, bounds);
-    let (number, sigma) = (cells.number(Column::Value), uncertainty(cells));
+    let (number, sigma) = (cells.number(EvidenceColumn::Value), uncertainty(cells));
     let (number, sigma, size) = (number?, sigma?, size?);
     let value = number * size;
     if !bounds.holds(value) {
-        let what = bounds.refusal(number, cells.text(Column::Unit));
-        return cells.refuse(Column::Value, what);
+        let what = bounds.refusal(number, cells.text(EvidenceColumn::Unit));
+        return cells.refuse(EvidenceColumn::Value, what);
     }
     if sigma > number {
         let what =
             format!("{sigma} is more than the value, {number}; give the standard uncertainty in the value's unit");
-        return cells.refuse(Column::Sigma, what);
+        return cells.refuse(EvidenceColumn::Sigma, what);
     }
     let value = if quantity == Quantity::MaxWeight { Value::Tonnes(value) } else { Value::Metres(value) };
     Some((value, sigma * size))
@@ -125,23 +125,23 @@ fn measured(cells: &mut Cells, quantity: Quantity, bounds: &Bounds) -> Option<(V
 
 /// The size of the row's unit in metres or tonnes.
 fn unit(cells: &mut Cells, bounds: &Bounds) -> Option<f64> {
-    let Some(text) = cells.text(Column::Unit) else { return Some(1.0) };
+    let Some(text) = cells.text(EvidenceColumn::Unit) else { return Some(1.0) };
     if let Some(unit) = bounds.units.iter().find(|unit| unit.0.eq_ignore_ascii_case(text)) {
         return Some(unit.1);
     }
     let known: Vec<&str> = bounds.units.iter().map(|unit| unit.0).collect();
     let what = format!("`{}` is no unit of a {}; known are {}", text.escape_debug(), bounds.what, known.join(", "));
-    cells.refuse(Column::Unit, what)
+    cells.refuse(EvidenceColumn::Unit, what)
 }
 
 /// The standard uncertainty in the row's unit.
 fn uncertainty(cells: &mut Cells) -> Option<f64> {
-    if !cells.has(Column::Sigma) {
+    if !cells.has(EvidenceColumn::Sigma) {
         return Some(0.0);
     }
-    let sigma = cells.number(Column::Sigma)?;
+    let sigma = cells.number(EvidenceColumn::Sigma)?;
     if sigma < 0.0 {
-        return cells.refuse(Column::Sigma, format!("{sigma} is negative; give the standard uncertainty"));
+        return cells.refuse(EvidenceColumn::Sigma, format!("{sigma} is negative; give the standard uncertainty"));
     }
     Some(sigma)
 }

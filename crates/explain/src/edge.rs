@@ -2,9 +2,9 @@
 //! them, and can be compared with the stored certificate.
 
 use super::hints::{self, Hints};
-use super::legal::Conflict;
+use super::legal::RuleConflict;
 use super::no_bound;
-use super::ride::Ride;
+use super::ride::NominalRide;
 use super::tightest::{HingePlace, LimitingPlace};
 use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
@@ -32,7 +32,7 @@ pub fn explain_edge(
 ) -> Result<Option<Explanation>, Stopped> {
     stop.check()?;
     let Some((key, facts)) = EdgeKey::of(network, edge).zip(network.edges.get(edge.index())) else { return Ok(None) };
-    let conflict = Conflict::of(network, facts, &model.vehicle);
+    let conflict = RuleConflict::of(network, facts, &model.vehicle);
     let road = road_facts(network, key, facts, settings.policy, &model.vehicle);
     let case = Case::of(network, edge, settings);
     stop.check()?;
@@ -167,7 +167,7 @@ fn seen_from(
 ) -> Option<Geometry> {
     let (span, result) = (spans.get(which)?.clone(), results.into_iter().nth(which)?);
     certificate.result = result.clone();
-    let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
+    let ride = NominalRide::new(corridor, &certificate.plan, &model.vehicle);
     let place = LimitingPlace::of(corridor, &ride, &model.vehicle, &result)?;
     let hinge = HingePlace::of(corridor, &ride, &model.vehicle, &span, &result)?;
     let (frame, corridor, tapers) = (None, corridor.clone(), Vec::new());

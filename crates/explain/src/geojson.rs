@@ -7,8 +7,8 @@ use geo::orient::{Direction, Orient as _};
 use geo::{LineString, MultiPolygon};
 use serde_json::{Map, Value, json};
 
-use super::drawn::{Drawn, Motion};
 use super::json::{body_part, json as answer};
+use super::map_shapes::{DrawnMotion, MapShapes};
 use super::{Explanation, Geometry, TurnExplanation};
 use crate::corridor::{Frame, FrameError};
 use crate::osm::{LonLat, rounded};
@@ -40,7 +40,7 @@ pub fn edge_geojson(e: &Explanation, stop: &Stop) -> Result<Value, MapError> {
     let writer = Writer { e, id: ("edge_id", road.edge.id) };
     let mut header = answer(e);
     header["policy"] = json!(road.policy.name());
-    Ok(collection(&header, &writer.features(Drawn::of_edge(e, stop)?.as_ref(), &road.line)?))
+    Ok(collection(&header, &writer.features(MapShapes::of_edge(e, stop)?.as_ref(), &road.line)?))
 }
 
 /// A turn's explanation as a `FeatureCollection`.
@@ -56,7 +56,7 @@ pub fn turn_geojson(t: &TurnExplanation, stop: &Stop) -> Result<Value, MapError>
     header["turn"] = json!(t.title());
     header["turn_corridor"] = json!(t.strip.name());
     header["note"] = json!(TURN_NOTE);
-    Ok(collection(&header, &writer.features(Drawn::of_turn(t, stop)?.as_ref(), &t.facts.line)?))
+    Ok(collection(&header, &writer.features(MapShapes::of_turn(t, stop)?.as_ref(), &t.facts.line)?))
 }
 
 fn collection(header: &Value, features: &[Value]) -> Value {
@@ -72,7 +72,7 @@ struct Writer<'e> {
 
 impl Writer<'_> {
     /// All features. Without a corridor there is only the map's line.
-    fn features(&self, drawn: Option<&Drawn>, line: &[LonLat]) -> Result<Vec<Value>, FrameError> {
+    fn features(&self, drawn: Option<&MapShapes>, line: &[LonLat]) -> Result<Vec<Value>, FrameError> {
         let Some(drawn) = drawn else {
             let line: Vec<[f64; 2]> = line.iter().map(|place| rounded(place.degrees().into())).collect();
             let geometry = json!({"type": "LineString", "coordinates": line});
@@ -88,7 +88,7 @@ impl Writer<'_> {
         Ok(out)
     }
 
-    fn motion(&self, out: &mut Vec<Value>, motion: &Motion, g: &Geometry, frame: Frame) -> Result<(), FrameError> {
+    fn motion(&self, out: &mut Vec<Value>, motion: &DrawnMotion, g: &Geometry, frame: Frame) -> Result<(), FrameError> {
         for (i, swept) in motion.swept.iter().enumerate() {
             out.extend(polygons(frame, swept)?.map(|geometry| self.feature("swept", &geometry, &self.unit(i))));
         }

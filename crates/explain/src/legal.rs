@@ -7,7 +7,7 @@ use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// A rule that forbids a vehicle or cannot be read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Conflict {
+pub struct RuleConflict {
     /// The tag as `key=value`. Where it is not known, as after a measurement, the key, or the main key if several can set the same limit.
     /// The strictest of them counts.
     pub tag: String,
@@ -21,7 +21,7 @@ pub struct Conflict {
     pub surveyed: bool,
 }
 
-impl Conflict {
+impl RuleConflict {
     /// The first rule in the order in which [`crate::osm::facts::Legal::forbids`] decides.
     pub(super) fn of(network: &Network, edge: &Edge, vehicle: &Vehicle) -> Option<Self> {
         let (legal, limits) = (&network.legal(edge), network.site.limits(edge));

@@ -16,7 +16,7 @@
 //! | `names` | names of parts and places, and cautiously rounded amounts |
 //! | `words` | the explanation as sentences |
 //! | `json` | the explanation as JSON |
-//! | `drawn`, `swept` | the shapes that a map shows of an explanation |
+//! | `map_shapes`, `swept_ground` | the shapes that a map shows of an explanation |
 //! | `geojson` | these shapes as GeoJSON, for maps and for programs such as QGIS |
 //! | `diff` | what changed for a vehicle from one database to another |
 //! | `manoeuvres` | the turns by which regulators judge vehicles |
@@ -30,18 +30,18 @@ use netcert_rows as rows;
 use netcert_rows::settings;
 
 pub mod diff;
-mod drawn;
 mod edge;
 mod geojson;
 mod hints;
 mod json;
 mod legal;
 pub mod manoeuvres;
+mod map_shapes;
 mod names;
 mod no_bound;
 mod own_corridor;
 mod ride;
-mod swept;
+mod swept_ground;
 #[cfg(test)]
 mod tests;
 mod tightest;
@@ -54,10 +54,10 @@ pub use edge::explain_edge;
 pub use geojson::{MapError, TURN_NOTE, edge_geojson, turn_geojson};
 pub use hints::{Hints, KerbHint, OtherStrip, ShorterHint, WidthHint};
 pub use json::json;
-pub use legal::Conflict;
+pub use legal::RuleConflict;
 pub use names::cautious_m;
 pub use own_corridor::explain_corridor;
-pub use ride::Ride;
+pub use ride::NominalRide;
 pub use tightest::{Bend, BodyPart, Cross, HingePlace, LimitingPlace};
 pub use turn::{TurnExplanation, explain_turn};
 pub use words::{Words, words};
@@ -86,7 +86,7 @@ pub struct Explanation {
     /// Changes that would make an unsafe edge safe.
     pub hints: Hints,
     /// The rule that forbids or cannot be read.
-    pub conflict: Option<Conflict>,
+    pub conflict: Option<RuleConflict>,
 }
 
 /// Roads of a turn that its sentences name.
@@ -151,7 +151,7 @@ pub struct Geometry {
     /// belong to the span.
     pub certificate: Certificate,
     /// The poses of all units along the plan.
-    pub ride: Ride,
+    pub ride: NominalRide,
     /// The place of the least leeway.
     pub place: LimitingPlace,
     /// The place of the least hinge margin.

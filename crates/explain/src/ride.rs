@@ -8,7 +8,7 @@ use crate::vehicle::Vehicle;
 
 /// A vehicle's nominal motion along a plan.
 #[derive(Debug, Clone)]
-pub struct Ride {
+pub struct NominalRide {
     /// The poses at every vertex. There is a vertex for each station, and vertices over the vehicle's length after the last.
     poses: Vec<Vec<Pose>>,
     /// The direction in which the steer axle moves at each vertex, radians.
@@ -16,7 +16,7 @@ pub struct Ride {
     spacing_m: f64,
 }
 
-impl Ride {
+impl NominalRide {
     /// The motion along `plan`, which has one point for each station of the corridor.
     #[must_use]
     pub fn new(corridor: &Corridor, plan: &[[f64; 2]], vehicle: &Vehicle) -> Self {

@@ -39,7 +39,7 @@ fn steering_on_a_circle_is_the_arc_sine_of_l_over_r() {
     let corridor = circle(30.0);
     let vehicle = Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap().clone();
     let plan: Vec<[f64; 2]> = corridor.x.iter().zip(&corridor.y).map(|(&x, &y)| [x, y]).collect();
-    let ride = Ride::new(&corridor, &plan, &vehicle);
+    let ride = NominalRide::new(&corridor, &plan, &vehicle);
     let steering = (3.7_f64 / 30.0).asin();
     assert!((ride.angle(80, 0) - steering).abs() < 2e-3, "{}", ride.angle(80, 0));
     // The tractor's rear axle is on √(R² − L²). The kingpin is ahead of this axle, so it moves further into the bend than the

@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::ride::Ride;
-use crate::corridor::{Area, Corridor};
+use super::ride::NominalRide;
+use crate::corridor::{Corridor, PlaneArea};
 use crate::stet::motion::Pose;
 use crate::stet::{Side, SpanResult};
 use crate::vehicle::{Unit, Vehicle};
@@ -88,7 +88,7 @@ pub struct HingePlace {
 }
 
 impl LimitingPlace {
-    pub(super) fn of(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
+    pub(super) fn of(corridor: &Corridor, ride: &NominalRide, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
         let limiting = &result.limiting;
         if limiting.in_area {
             return Self::in_area(corridor, ride, vehicle, result);
@@ -134,7 +134,7 @@ impl LimitingPlace {
 
 impl LimitingPlace {
     /// The place of the limiting unit's side that comes closest to the boundary of the areas.
-    fn in_area(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
+    fn in_area(corridor: &Corridor, ride: &NominalRide, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
         let limiting = &result.limiting;
         let unit = vehicle.units.get(limiting.unit)?;
         let aside = if limiting.side == Side::Left { 0.5 } else { -0.5 } * unit.width_m;
@@ -143,7 +143,7 @@ impl LimitingPlace {
         let near_m = (limiting.station as f64 * corridor.spacing_m, FAR_LENGTHS * vehicle.length_m);
         let mut best: Option<(f64, usize, f64, [f64; 2])> = None;
         for head in 0..ride.len() {
-            let areas: Vec<&Area> = counting(corridor, head);
+            let areas: Vec<&PlaneArea> = counting(corridor, head);
             if areas.is_empty() || (head as f64 * corridor.spacing_m - near_m.0).abs() > near_m.1 {
                 continue;
             }
@@ -183,13 +183,13 @@ impl LimitingPlace {
 }
 
 /// The areas that count while the steer axle is at a station.
-fn counting(corridor: &Corridor, head: usize) -> Vec<&Area> {
+fn counting(corridor: &Corridor, head: usize) -> Vec<&PlaneArea> {
     corridor.areas.iter().filter(|span| span.heads.contains(&head)).map(|span| span.area.as_ref()).collect()
 }
 
 /// The room of a place in the area that leaves it most, metres, negative outside, and the nearest place of that boundary.
-fn room(areas: &[&Area], p: [f64; 2]) -> Option<(f64, [f64; 2])> {
-    let of = |area: &&Area| {
+fn room(areas: &[&PlaneArea], p: [f64; 2]) -> Option<(f64, [f64; 2])> {
+    let of = |area: &&PlaneArea| {
         let edge = area.nearest(p)?;
         let far = (edge[0] - p[0]).hypot(edge[1] - p[1]);
         Some((if area.contains(p) { far } else { -far }, edge))
@@ -198,7 +198,7 @@ fn room(areas: &[&Area], p: [f64; 2]) -> Option<(f64, [f64; 2])> {
 }
 
 /// The station of the steer axle at which the foot of the body point passes the station `wanted`.
-fn head_at(ride: &Ride, wanted: f64, behind: f64, foot_of: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
+fn head_at(ride: &NominalRide, wanted: f64, behind: f64, foot_of: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
     // The lengths of plan and corridor differ by a few metres at most, and a trailer that cuts in adds some metres.
     let last = ride.len().checked_sub(1)? as f64;
     let (from, to) = ((wanted + behind - 25.0).clamp(0.0, last), (wanted + behind + 25.0).clamp(0.0, last));
@@ -218,7 +218,7 @@ impl HingePlace {
     /// close, the place where the span bends most.
     pub(super) fn of(
         corridor: &Corridor,
-        ride: &Ride,
+        ride: &NominalRide,
         vehicle: &Vehicle,
         span: &Range<usize>,
         result: &SpanResult,

@@ -2,7 +2,7 @@
 
 use super::edge::{edge_verdict, geometry};
 use super::hints::{self, Hints, KerbHint};
-use super::legal::Conflict;
+use super::legal::RuleConflict;
 use super::{Explanation, Geometry, TurnRoads, no_bound};
 use crate::certify::{MOST_KERB_M, best_of, turn_verdict};
 use crate::corridor::Corridor;
@@ -179,7 +179,7 @@ fn roads_that_decide(
     settings: &Settings,
     own: Verdict,
     stop: &Stop,
-) -> Result<(TurnRoads, Option<Conflict>), Stopped> {
+) -> Result<(TurnRoads, Option<RuleConflict>), Stopped> {
     let banning = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
     let restriction = banning.map(|ban| format!("{}, relation {}", ban.kind.name(), ban.relation_id));
     let mut named = TurnRoads { restriction, decides: None, refused: Vec::new() };
@@ -199,7 +199,7 @@ fn roads_that_decide(
         };
         if verdict == own && !matches!(own, Verdict::Safe | Verdict::Unsafe(_)) && named.decides.is_none() {
             named.decides = Some(network.title(edge));
-            conflict = Conflict::of(network, edge, &model.vehicle);
+            conflict = RuleConflict::of(network, edge, &model.vehicle);
         }
         // The edges that a passage leads over need no certificates of their own.
         if ends && verdict != Verdict::Safe && matches!(own, Verdict::Safe | Verdict::Unsafe(_)) {

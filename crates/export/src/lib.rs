@@ -55,7 +55,7 @@ pub use error::ExportError;
 pub use formats::Target;
 pub use header::{Header, Provenance};
 pub use measurements::{MeasuredBy, Measurements};
-pub use permit::{Bits, PermitPolicy, Permitted, Refusal, Tally};
+pub use permit::{Bits, PermitPolicy, PermitRefusal, Permitted, Tally};
 pub use source::{ExportEdge, ExportTurn, Source};
 pub use unfinished::Unfinished;
 

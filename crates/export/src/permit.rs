@@ -25,7 +25,7 @@ pub struct PermitPolicy {
 /// Why an edge or turn may not be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Refusal {
+pub enum PermitRefusal {
     /// The verdict is not `safe`.
     Verdict(Verdict),
     /// The verdict is safe, but the RSC is below the threshold.
@@ -36,7 +36,7 @@ pub enum Refusal {
     Edge,
 }
 
-impl Refusal {
+impl PermitRefusal {
     /// Stable words for the refusal, such as `unsafe: width` or `rsc`.
     #[must_use]
     pub fn words(self) -> String {
@@ -55,8 +55,8 @@ impl Refusal {
 impl PermitPolicy {
     /// Why an edge is refused. `None` if it is permitted.
     #[must_use]
-    pub fn edge(&self, permit: Permit, width: Option<WidthSource>) -> Option<Refusal> {
-        self.certificate(permit).or_else(|| (!self.width(width)).then_some(Refusal::WidthSource))
+    pub fn edge(&self, permit: Permit, width: Option<WidthSource>) -> Option<PermitRefusal> {
+        self.certificate(permit).or_else(|| (!self.width(width)).then_some(PermitRefusal::WidthSource))
     }
 
     /// Whether the source of a width is good enough.
@@ -67,23 +67,23 @@ impl PermitPolicy {
 
     /// Why a turn is refused whose edges are permitted. `None` if the turn is permitted.
     #[must_use]
-    pub fn turn(&self, permit: Permit) -> Option<Refusal> {
+    pub fn turn(&self, permit: Permit) -> Option<PermitRefusal> {
         self.certificate(permit)
     }
 
     /// Why a turn is refused that has a refused edge: for itself, or else for the edge.
     #[must_use]
-    pub fn turn_of_refused_edge(&self, permit: Permit) -> Refusal {
-        self.certificate(permit).unwrap_or(Refusal::Edge)
+    pub fn turn_of_refused_edge(&self, permit: Permit) -> PermitRefusal {
+        self.certificate(permit).unwrap_or(PermitRefusal::Edge)
     }
 
-    fn certificate(&self, permit: Permit) -> Option<Refusal> {
+    fn certificate(&self, permit: Permit) -> Option<PermitRefusal> {
         if !permit.usable() {
-            return Some(Refusal::Verdict(permit.verdict));
+            return Some(PermitRefusal::Verdict(permit.verdict));
         }
         // A threshold above 0 requires an RSC. Without a threshold a safe verdict suffices.
         let enough = self.min_rsc_m <= 0.0 || permit.rsc_m.is_some_and(|rsc_m| rsc_m >= self.min_rsc_m);
-        (!enough).then_some(Refusal::Rsc)
+        (!enough).then_some(PermitRefusal::Rsc)
     }
 }
 
@@ -143,13 +143,13 @@ impl Bits {
 pub struct Tally {
     /// Number of permitted ones.
     pub permitted: u64,
-    /// Numbers of refused ones by [`Refusal::words`].
+    /// Numbers of refused ones by [`PermitRefusal::words`].
     pub refused: BTreeMap<String, u64>,
 }
 
 impl Tally {
     /// Counts one edge or turn.
-    pub fn count(&mut self, refusal: Option<Refusal>) {
+    pub fn count(&mut self, refusal: Option<PermitRefusal>) {
         match refusal {
             None => self.permitted += 1,
             Some(refusal) => *self.refused.entry(refusal.words()).or_default() += 1,
@@ -190,14 +190,14 @@ mod tests {
         let rule = PermitPolicy { min_rsc_m: 0.2, min_width_source: Some(WidthSource::Tagged) };
         let narrow = Verdict::Unsafe(UnsafeReason::Width);
         let unsafe_ = Permit { verdict: narrow, rsc_m: Some(5.0) };
-        assert_eq!(rule.edge(unsafe_, Some(WidthSource::Surveyed)), Some(Refusal::Verdict(narrow)));
-        assert_eq!(rule.edge(Permit::UNKNOWN, None), Some(Refusal::Verdict(Permit::UNKNOWN.verdict)));
-        assert_eq!(rule.edge(safe(0.1), Some(WidthSource::Tagged)), Some(Refusal::Rsc));
-        assert_eq!(rule.edge(safe(0.2), Some(WidthSource::Assumed)), Some(Refusal::WidthSource));
-        assert_eq!(rule.edge(safe(0.2), None), Some(Refusal::WidthSource));
+        assert_eq!(rule.edge(unsafe_, Some(WidthSource::Surveyed)), Some(PermitRefusal::Verdict(narrow)));
+        assert_eq!(rule.edge(Permit::UNKNOWN, None), Some(PermitRefusal::Verdict(Permit::UNKNOWN.verdict)));
+        assert_eq!(rule.edge(safe(0.1), Some(WidthSource::Tagged)), Some(PermitRefusal::Rsc));
+        assert_eq!(rule.edge(safe(0.2), Some(WidthSource::Assumed)), Some(PermitRefusal::WidthSource));
+        assert_eq!(rule.edge(safe(0.2), None), Some(PermitRefusal::WidthSource));
         assert_eq!(rule.edge(safe(0.2), Some(WidthSource::Surveyed)), None);
         assert_eq!(rule.turn(safe(0.2)), None);
-        assert_eq!(rule.turn_of_refused_edge(safe(0.2)), Refusal::Edge);
+        assert_eq!(rule.turn_of_refused_edge(safe(0.2)), PermitRefusal::Edge);
         assert_eq!(PermitPolicy::default().edge(safe(0.0), None), None);
     }
 

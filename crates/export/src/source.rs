@@ -6,7 +6,7 @@
 use super::ExportError;
 use super::ask::Ask;
 use super::header::{Header, Provenance};
-use super::permit::{Bits, Permitted, Refusal};
+use super::permit::{Bits, PermitRefusal, Permitted};
 use crate::reporter::Reporter;
 use crate::route::Permit;
 use crate::rows::{EdgeRow, Rings, TurnRow};
@@ -18,7 +18,7 @@ pub struct ExportEdge {
     /// The row, as in `netcert query`.
     pub row: EdgeRow,
     /// Why it is refused. `None` if it is permitted.
-    pub refusal: Option<Refusal>,
+    pub refusal: Option<PermitRefusal>,
 }
 
 /// A turn with all its columns.
@@ -27,7 +27,7 @@ pub struct ExportTurn {
     /// The row, as in `netcert query --turns`.
     pub row: TurnRow,
     /// Why it is refused. `None` if it is permitted.
-    pub refusal: Option<Refusal>,
+    pub refusal: Option<PermitRefusal>,
 }
 
 /// The source of an export.

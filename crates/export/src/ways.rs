@@ -12,7 +12,7 @@ use crate::osm::facts::Direction;
 use crate::osm::pbf::copy::Blobs;
 use crate::rows::EdgeNo;
 use crate::rows::EdgeStep;
-use crate::store::{StoreError, Streamed};
+use crate::store::{RowStream, StoreError};
 
 use super::Source;
 
@@ -68,14 +68,14 @@ pub(super) enum OnWay {
 
 /// A stream of edges that follows a stream of ways.
 pub(super) struct WayEdges<'d> {
-    rows: Peekable<Streamed<'d, EdgeStep>>,
+    rows: Peekable<RowStream<'d, EdgeStep>>,
     last_way: i64,
 }
 
 impl<'d> WayEdges<'d> {
     /// Follows the rows of [`crate::store::Database::edge_steps`].
     #[must_use]
-    pub(super) fn new(rows: Streamed<'d, EdgeStep>) -> Self {
+    pub(super) fn new(rows: RowStream<'d, EdgeStep>) -> Self {
         Self { rows: rows.peekable(), last_way: i64::MIN }
     }
 

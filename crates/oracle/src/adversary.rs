@@ -4,11 +4,11 @@
 //! axle cannot jump, so its deviation is the bang-bang signal with bounded slope, within ±ε.
 
 use crate::path::{V2, along, direction, dot, left_of};
-use crate::simulator::{Disturbance, Drive, MAX_UNITS, PerUnit, Run};
+use crate::simulator::{Disturbance, MAX_UNITS, PerUnit, SimulatedDrive, SimulatedRun};
 
 /// The body point to push: at the end of `step`, along `push` (a unit vector).
 #[derive(Debug, Clone, Copy)]
-pub struct Target {
+pub struct PushTarget {
     pub step: usize,
     pub unit: usize,
     pub ahead_m: f64,
@@ -26,7 +26,7 @@ pub struct Kernel {
 
 /// The adjoint at one end point: μ (by the guided point's velocity), −dλ/dt, and the response to each slip angle.
 fn adjoint(
-    drive: &Drive<'_>,
+    drive: &SimulatedDrive<'_>,
     headings: &PerUnit,
     velocity: V2,
     slip: &PerUnit,
@@ -55,7 +55,13 @@ fn adjoint(
 }
 
 /// The impulse responses of `target` over at most `window` steps, linearised about `run` under `disturbance`.
-pub fn kernel(drive: &Drive<'_>, run: &Run, disturbance: &Disturbance, target: &Target, window: usize) -> Kernel {
+pub fn kernel(
+    drive: &SimulatedDrive<'_>,
+    run: &SimulatedRun,
+    disturbance: &Disturbance,
+    target: &PushTarget,
+    window: usize,
+) -> Kernel {
     let lambda = gradient(drive, run.at(target.step).1, target);
     backwards(drive, run, disturbance, target.step, window, lambda, target.push)
 }
@@ -63,8 +69,8 @@ pub fn kernel(drive: &Drive<'_>, run: &Run, disturbance: &Disturbance, target: &
 /// The impulse responses of the articulation at `hinge` after `step`, positive to the left by `sign`. Hinge 0 is the
 /// prime mover's heading.
 pub fn hinge_kernel(
-    drive: &Drive<'_>,
-    run: &Run,
+    drive: &SimulatedDrive<'_>,
+    run: &SimulatedRun,
     disturbance: &Disturbance,
     step: usize,
     window: usize,
@@ -82,8 +88,8 @@ pub fn hinge_kernel(
 /// `lambda` is the target's change with each heading at its step; `push` is its change with the steer axle's place
 /// there.
 fn backwards(
-    drive: &Drive<'_>,
-    run: &Run,
+    drive: &SimulatedDrive<'_>,
+    run: &SimulatedRun,
     disturbance: &Disturbance,
     at: usize,
     window: usize,
@@ -113,12 +119,12 @@ fn backwards(
     Kernel { first, steer, slip }
 }
 
-fn fraction(drive: &Drive<'_>, step: usize) -> f64 {
+fn fraction(drive: &SimulatedDrive<'_>, step: usize) -> f64 {
     (step % drive.steps_per_span) as f64 / drive.steps_per_span as f64
 }
 
 /// The change of the target's place along `push` with each heading at its instant.
-fn gradient(drive: &Drive<'_>, headings: &PerUnit, target: &Target) -> PerUnit {
+fn gradient(drive: &SimulatedDrive<'_>, headings: &PerUnit, target: &PushTarget) -> PerUnit {
     let mut lambda = [0.0; MAX_UNITS];
     for (k, unit) in drive.vehicle.units.iter().enumerate().take(target.unit + 1) {
         let u = direction(headings[k]);
@@ -134,7 +140,7 @@ fn gradient(drive: &Drive<'_>, headings: &PerUnit, target: &Target) -> PerUnit {
 
 /// The adversary's bounds.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds {
+pub struct AdversaryBounds {
     /// ε: bound of the steer axle's lateral deviation, metres.
     pub steer_m: f64,
     /// Largest change of that deviation in one step, metres.
@@ -145,14 +151,14 @@ pub struct Bounds {
 
 impl Kernel {
     /// Σ |response| · bound: the largest movement of the linearised point if the steer axle could jump.
-    pub fn reach_m(&self, bounds: &Bounds) -> f64 {
+    pub fn reach_m(&self, bounds: &AdversaryBounds) -> f64 {
         let steer: f64 = self.steer.iter().map(|g| g.abs() * bounds.steer_m).sum();
         let slip: f64 = self.slip.iter().flat_map(|g| (0..MAX_UNITS).map(|i| g[i].abs() * bounds.slip[i])).sum();
         steer + slip
     }
 
     /// Writes the matched disturbance. After the target's step the steer axle keeps its deviation and slip ends.
-    pub fn attack(&self, bounds: &Bounds, steps: usize) -> Disturbance {
+    pub fn attack(&self, bounds: &AdversaryBounds, steps: usize) -> Disturbance {
         let mut d = Disturbance::none(steps);
         for (k, g) in self.slip.iter().enumerate() {
             d.slip[self.first + k] = std::array::from_fn(|i| bounds.slip[i] * sign(g[i]));
@@ -167,7 +173,7 @@ impl Kernel {
 
     /// The bang-bang signal with bounded slope, which switches half a transition early. The last switch is the body's
     /// own share of the deviation. It is kept only if that moves the point farther.
-    fn steer_signal(&self, bounds: &Bounds) -> Vec<f64> {
+    fn steer_signal(&self, bounds: &AdversaryBounds) -> Vec<f64> {
         let count = self.steer.len();
         let transition = (2.0 * bounds.steer_m / bounds.change_m).ceil() as usize;
         let wish = |k: usize, kept: bool| {

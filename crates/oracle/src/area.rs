@@ -2,7 +2,7 @@
 //!
 //! Room is positive inside and negative outside, where it says how far away the area is.
 
-use netcert_base::corridor::Area;
+use netcert_base::corridor::PlaneArea;
 
 use crate::path::{V2, along, direction, dot, left_of};
 
@@ -11,7 +11,7 @@ const TRIED_M: f64 = 0.1;
 
 /// An area's boundary, prepared for measuring.
 #[derive(Debug, Clone)]
-pub struct Ground {
+pub struct AreaBoundary {
     segments: Vec<[V2; 2]>,
 }
 
@@ -27,7 +27,7 @@ pub struct Body {
 
 /// An edge of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Edge {
+pub enum BodyEdge {
     Left,
     Right,
     Front,
@@ -35,13 +35,13 @@ pub enum Edge {
 }
 
 /// All edges of a body.
-pub const EDGES: [Edge; 4] = [Edge::Left, Edge::Right, Edge::Front, Edge::Rear];
+pub const EDGES: [BodyEdge; 4] = [BodyEdge::Left, BodyEdge::Right, BodyEdge::Front, BodyEdge::Rear];
 
 /// A place of a body's outline, and the place of the boundary that is nearest to it.
 #[derive(Debug, Clone, Copy)]
 pub struct Touch {
     pub room_m: f64,
-    pub edge: Edge,
+    pub edge: BodyEdge,
     /// Ahead of the body's axle, and to its left, metres.
     pub ahead_m: f64,
     pub aside_m: f64,
@@ -50,8 +50,8 @@ pub struct Touch {
     pub nearest: V2,
 }
 
-impl Ground {
-    pub fn new(area: &Area) -> Self {
+impl AreaBoundary {
+    pub fn new(area: &PlaneArea) -> Self {
         let mut segments = Vec::new();
         for ring in &area.rings {
             let mut before = ring.last();
@@ -98,7 +98,7 @@ impl Ground {
 
     /// The place of one edge that has the least room. It is exact where all of the edge is inside. Elsewhere it is the
     /// deepest of places 0.1 m apart.
-    pub fn edge(&self, body: &Body, edge: Edge) -> Touch {
+    pub fn edge(&self, body: &Body, edge: BodyEdge) -> Touch {
         let [from, to] = body.edge(edge);
         let wall = [body.at(from), body.at(to)];
         let mut best: Option<(f64, V2, V2)> = None;
@@ -136,7 +136,7 @@ impl Ground {
 }
 
 /// One place of a body's outline where a place may be in any of several areas. `None` without areas.
-pub fn place_in_any(grounds: &[&Ground], body: &Body, edge: Edge, [ahead_m, aside_m]: V2) -> Option<Touch> {
+pub fn place_in_any(grounds: &[&AreaBoundary], body: &Body, edge: BodyEdge, [ahead_m, aside_m]: V2) -> Option<Touch> {
     let at = body.at([ahead_m, aside_m]);
     let (room_m, nearest) = grounds.iter().map(|ground| ground.room(at)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Touch { room_m, edge, ahead_m, aside_m, at, nearest })
@@ -144,7 +144,7 @@ pub fn place_in_any(grounds: &[&Ground], body: &Body, edge: Edge, [ahead_m, asid
 
 /// The place of an edge that has the least room, if that is less than `enough`, where a place may be in any of several
 /// areas. With one area it is exact; otherwise it is the least of places 0.1 m apart.
-pub fn in_any(grounds: &[&Ground], body: &Body, edge: Edge, enough: f64) -> Option<Touch> {
+pub fn in_any(grounds: &[&AreaBoundary], body: &Body, edge: BodyEdge, enough: f64) -> Option<Touch> {
     if let [only] = grounds {
         return Some(only.edge(body, edge)).filter(|touch| touch.room_m < enough);
     }
@@ -153,7 +153,7 @@ pub fn in_any(grounds: &[&Ground], body: &Body, edge: Edge, enough: f64) -> Opti
 
 /// The least of places 0.1 m apart. Room changes by a metre per metre at most, so places are left out whose neighbours
 /// have too much of it.
-fn tried(grounds: &[&Ground], body: &Body, edge: Edge, enough: f64) -> Option<Touch> {
+fn tried(grounds: &[&AreaBoundary], body: &Body, edge: BodyEdge, enough: f64) -> Option<Touch> {
     let [from, to] = body.edge(edge);
     let way = along(to, -1.0, from);
     let length = dot(way, way).sqrt();
@@ -193,24 +193,24 @@ impl Body {
     }
 
     /// Both ends of an edge, seen from the body.
-    pub fn edge(&self, edge: Edge) -> [V2; 2] {
+    pub fn edge(&self, edge: BodyEdge) -> [V2; 2] {
         let (front, rear, half) = (self.front_m, -self.rear_m, self.half_m);
         match edge {
-            Edge::Left => [[rear, half], [front, half]],
-            Edge::Right => [[rear, -half], [front, -half]],
-            Edge::Front => [[front, -half], [front, half]],
-            Edge::Rear => [[rear, -half], [rear, half]],
+            BodyEdge::Left => [[rear, half], [front, half]],
+            BodyEdge::Right => [[rear, -half], [front, -half]],
+            BodyEdge::Front => [[front, -half], [front, half]],
+            BodyEdge::Rear => [[rear, -half], [rear, half]],
         }
     }
 
     /// The direction out of the body across an edge.
-    pub fn outwards(&self, edge: Edge) -> V2 {
+    pub fn outwards(&self, edge: BodyEdge) -> V2 {
         let back = |v: V2| [-v[0], -v[1]];
         match edge {
-            Edge::Left => left_of(self.ahead),
-            Edge::Right => back(left_of(self.ahead)),
-            Edge::Front => self.ahead,
-            Edge::Rear => back(self.ahead),
+            BodyEdge::Left => left_of(self.ahead),
+            BodyEdge::Right => back(left_of(self.ahead)),
+            BodyEdge::Front => self.ahead,
+            BodyEdge::Rear => back(self.ahead),
         }
     }
 
@@ -280,8 +280,8 @@ mod tests {
         vec![[-half, -half], [half, -half], [half, half], [-half, half]]
     }
 
-    fn ground(rings: Vec<Vec<V2>>) -> Ground {
-        Ground::new(&Area { rings })
+    fn ground(rings: Vec<Vec<V2>>) -> AreaBoundary {
+        AreaBoundary::new(&PlaneArea { rings })
     }
 
     fn body(axle: V2, heading: f64) -> Body {
@@ -299,8 +299,9 @@ mod tests {
 
     #[test]
     fn whether_a_place_is_inside_agrees_with_the_area_itself() {
-        let area = Area { rings: vec![vec![[0.0, 0.0], [9.0, 1.0], [4.0, 3.0], [8.0, 8.0], [-2.0, 6.0]], square(0.7)] };
-        let ground = Ground::new(&area);
+        let area =
+            PlaneArea { rings: vec![vec![[0.0, 0.0], [9.0, 1.0], [4.0, 3.0], [8.0, 8.0], [-2.0, 6.0]], square(0.7)] };
+        let ground = AreaBoundary::new(&area);
         let mut draw = Draw(5);
         for _ in 0..2_000 {
             let place = [draw.between(-4.0, 10.0), draw.between(-3.0, 9.0)];
@@ -325,7 +326,7 @@ mod tests {
         let ground = ground(vec![vec![[0.0, 0.0], [-9.0, 5.0], [-9.0, -9.0], [9.0, -9.0], [9.0, 5.0]]]);
         let touch = ground.body(&body([-1.0, -0.7], 0.0));
         assert!((touch.room_m - 0.2).abs() < 1e-12);
-        assert!((touch.ahead_m - 1.0).abs() < 1e-12 && touch.edge == Edge::Left);
+        assert!((touch.ahead_m - 1.0).abs() < 1e-12 && touch.edge == BodyEdge::Left);
         assert_eq!(touch.nearest, [0.0, 0.0]);
         // Now the corner is 0.3 m inside of the side, and no corner of the body is outside.
         let deep = body([-1.0, -0.2], 0.0);
@@ -379,10 +380,10 @@ mod tests {
         let shifted = |x: f64| vec![[x, -2.0], [x + 10.0, -2.0], [x + 10.0, 2.0], [x, 2.0]];
         let (a, b) = (ground(vec![shifted(0.0)]), ground(vec![shifted(6.0)]));
         let body = body([7.0, 0.0], 0.0);
-        let room = |grounds: &[&Ground], edge| in_any(grounds, &body, edge, f64::INFINITY).unwrap().room_m;
-        assert!((room(&[&a], Edge::Front)).abs() < 1e-12);
-        assert!((room(&[&a, &b], Edge::Front) - 1.5).abs() < 1e-12);
-        assert!((room(&[&a, &b], Edge::Rear) - 1.5).abs() < 1e-12);
-        assert!(in_any(&[], &body, Edge::Rear, f64::INFINITY).is_none());
+        let room = |grounds: &[&AreaBoundary], edge| in_any(grounds, &body, edge, f64::INFINITY).unwrap().room_m;
+        assert!((room(&[&a], BodyEdge::Front)).abs() < 1e-12);
+        assert!((room(&[&a, &b], BodyEdge::Front) - 1.5).abs() < 1e-12);
+        assert!((room(&[&a, &b], BodyEdge::Rear) - 1.5).abs() < 1e-12);
+        assert!(in_any(&[], &body, BodyEdge::Rear, f64::INFINITY).is_none());
     }
 }

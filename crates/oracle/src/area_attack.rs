@@ -8,14 +8,14 @@ use std::ops::{Range, RangeInclusive};
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
-use crate::adversary::{Bounds, Target, kernel};
+use crate::adversary::{AdversaryBounds, PushTarget, kernel};
 use crate::area::EDGES;
 use crate::attack::{self, Attack, Course, STEPS_PER_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
+use crate::least_room::{PathAreas, Stretch, Worst, body};
 use crate::path::{Path, V2, along, dot};
-use crate::simulator::{Disturbance, Near, Run, SearchGrid, sweep};
-use crate::swept::{Grounds, Stretch, Worst, body};
+use crate::simulator::{Disturbance, Near, SearchGrid, SimulatedRun, sweep};
 
 /// The steps and body points that are searched for places to attack.
 const COARSE: SearchGrid = SearchGrid { stride: 5, pitch_m: 0.5 };
@@ -31,7 +31,7 @@ pub const ALLOWANCE_RAD: f64 = 2e-4;
 
 /// What an attack on areas found.
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct AreaAttackOutcome {
     /// Least room in the areas, and its place. `None` if no area counts anywhere.
     pub least: Option<Worst>,
     /// The attack that found it.
@@ -49,7 +49,7 @@ pub struct Found {
     pub hinge: (f64, usize),
 }
 
-impl Default for Found {
+impl Default for AreaAttackOutcome {
     fn default() -> Self {
         Self {
             least: None,
@@ -63,7 +63,7 @@ impl Default for Found {
     }
 }
 
-impl Found {
+impl AreaAttackOutcome {
     /// The least of room and clearance, metres.
     pub fn least_m(&self) -> f64 {
         let room_m = self.least.map_or(f64::INFINITY, |worst| worst.room_m);
@@ -92,7 +92,13 @@ impl Found {
 }
 
 /// Attacks a claim at the `places` worst places, then its hinges and with noise.
-pub fn attack_areas(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim, draw: &mut Draw, places: usize) -> Found {
+pub fn attack_areas(
+    corridor: &Corridor,
+    vehicle: &Vehicle,
+    claim: &Claim,
+    draw: &mut Draw,
+    places: usize,
+) -> AreaAttackOutcome {
     let path = attack::path(corridor, vehicle, claim);
     AreaAttack::new(corridor, vehicle, &path, claim.shrink).fight(draw, places)
 }
@@ -114,8 +120,8 @@ impl Scope {
 /// Vehicle, areas and plan of one claim.
 pub struct AreaAttack<'a> {
     pub(crate) attack: Attack<'a>,
-    pub(crate) grounds: Grounds,
-    pub(crate) found: Found,
+    pub(crate) grounds: PathAreas,
+    pub(crate) found: AreaAttackOutcome,
     pub(crate) scope: Scope,
 }
 
@@ -123,21 +129,21 @@ impl<'a> AreaAttack<'a> {
     /// Prepares an attack on areas: drives the path undisturbed. The path has one vertex for each station.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
         let attack = Attack::new(corridor, vehicle, path, shrink);
-        let grounds = Grounds::new(corridor, &attack.drive);
-        let mut areas = Self { attack, grounds, found: Found::default(), scope: Scope::whole() };
+        let grounds = PathAreas::new(corridor, &attack.drive);
+        let mut areas = Self { attack, grounds, found: AreaAttackOutcome::default(), scope: Scope::whole() };
         areas.begin();
         areas
     }
 
     /// Forgets what was found, and measures the undisturbed run.
     pub(crate) fn begin(&mut self) {
-        self.found = Found::default();
+        self.found = AreaAttackOutcome::default();
         self.with_nominal(|areas, nominal| areas.measure(nominal, areas.attack.on_road(), "nothing"));
         self.found.undisturbed_m = self.found.least.map_or(f64::INFINITY, |worst| worst.room_m);
     }
 
     /// Runs every attack.
-    pub fn fight(mut self, draw: &mut Draw, places: usize) -> Found {
+    pub fn fight(mut self, draw: &mut Draw, places: usize) -> AreaAttackOutcome {
         let steps = self.grounds.steps();
         self.attack_in(steps, places);
         self.attack.attack_hinges(draw);
@@ -162,8 +168,8 @@ impl<'a> AreaAttack<'a> {
     }
 
     /// Calls `act` with the undisturbed run, which it may not change.
-    pub(crate) fn with_nominal(&mut self, act: impl FnOnce(&mut Self, &Run)) {
-        let empty = Run { first: 0, guide: Vec::new(), headings: Vec::new() };
+    pub(crate) fn with_nominal(&mut self, act: impl FnOnce(&mut Self, &SimulatedRun)) {
+        let empty = SimulatedRun { first: 0, guide: Vec::new(), headings: Vec::new() };
         let nominal = std::mem::replace(&mut self.attack.nominal, empty);
         act(self, &nominal);
         self.attack.nominal = nominal;
@@ -212,7 +218,7 @@ impl<'a> AreaAttack<'a> {
     }
 
     /// A place and the way from there to the boundary: outwards if it is inside, further away if it is outside.
-    fn target(&self, run: &Run, worst: &Worst, sign: f64) -> Target {
+    fn target(&self, run: &SimulatedRun, worst: &Worst, sign: f64) -> PushTarget {
         let way = along(worst.nearest, -1.0, worst.at);
         let length = dot(way, way).sqrt();
         let push = if length > 1e-6 {
@@ -222,7 +228,7 @@ impl<'a> AreaAttack<'a> {
             let out = body(&self.attack.drive, run, worst.step, worst.unit).outwards(worst.edge);
             [sign * out[0], sign * out[1]]
         };
-        Target { step: worst.step, unit: worst.unit, ahead_m: worst.ahead_m, aside_m: worst.aside_m, push }
+        PushTarget { step: worst.step, unit: worst.unit, ahead_m: worst.ahead_m, aside_m: worst.aside_m, push }
     }
 
     /// Attacks a place: linearised about the undisturbed run, then twice about the attacked run, at the place of the
@@ -231,9 +237,9 @@ impl<'a> AreaAttack<'a> {
         let drive_steps = self.attack.drive.steps();
         let per_step = self.attack.drive.path.spacing_m / self.attack.drive.steps_per_span as f64;
         let slope = course.slope(self.attack.bounds.steer_m, self.attack.drive.vehicle);
-        let bounds = Bounds { change_m: slope * per_step, ..self.attack.bounds };
+        let bounds = AdversaryBounds { change_m: slope * per_step, ..self.attack.bounds };
         let mut target = self.target(&self.attack.nominal, &worst, sign);
-        let mut attacked: Option<(Run, Disturbance)> = None;
+        let mut attacked: Option<(SimulatedRun, Disturbance)> = None;
         for round in 0..3 {
             let (run, before) =
                 attacked.as_ref().map_or((&self.attack.nominal, &self.attack.calm), |(run, d)| (run, d));
@@ -256,7 +262,7 @@ impl<'a> AreaAttack<'a> {
     }
 
     /// Records the least room of a run in some steps, and its clearance where no area counts.
-    pub(crate) fn measure(&mut self, run: &Run, range: Range<usize>, by: &'static str) {
+    pub(crate) fn measure(&mut self, run: &SimulatedRun, range: Range<usize>, by: &'static str) {
         let drive = &self.attack.drive;
         let range = range.start.max(run.first).max(self.scope.steps.start)
             ..range.end.min(run.steps().end).min(self.scope.steps.end);
@@ -314,7 +320,7 @@ mod tests {
     use crate::fleet;
     use crate::planner::drivable;
     use crate::road;
-    use netcert_base::corridor::{Area, AreaSpan};
+    use netcert_base::corridor::{AreaSpan, PlaneArea};
 
     /// A straight strip as an area: 5 m wide, with half-widths that forbid everything.
     fn strip() -> Corridor {
@@ -322,7 +328,7 @@ mod tests {
         let none = vec![0.0; stations];
         let mut corridor = road::corridor(0.5, [0.0; 2], 0.0, &none, &vec![2.5; stations], &vec![2.5; stations]);
         let ring = vec![[-200.0, -2.5], [300.0, -2.5], [300.0, 2.5], [-200.0, 2.5]];
-        corridor.areas = vec![AreaSpan { heads: 20..180, area: Arc::new(Area { rings: vec![ring] }) }];
+        corridor.areas = vec![AreaSpan { heads: 20..180, area: Arc::new(PlaneArea { rings: vec![ring] }) }];
         corridor
     }
 
@@ -356,7 +362,7 @@ mod tests {
         let vehicle = fleet::vehicle("US-WB67");
         let mut corridor = strip();
         let island = vec![[50.0, -0.1], [50.2, 0.0], [50.0, 0.1]];
-        let mut area = Area::clone(&corridor.areas[0].area);
+        let mut area = PlaneArea::clone(&corridor.areas[0].area);
         area.rings.push(island);
         corridor.areas[0].area = Arc::new(area);
         let found = attack_areas(&corridor, &vehicle, &claim(&corridor, 0.0), &mut Draw(2), 2);

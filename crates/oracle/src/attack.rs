@@ -8,12 +8,12 @@
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
-use crate::adversary::{Bounds, Target, hinge_kernel, kernel};
+use crate::adversary::{AdversaryBounds, PushTarget, hinge_kernel, kernel};
 use crate::claim::{BodyPoint, Claim};
 use crate::draw::Draw;
 use crate::path::{Path, along, direction, dot, left_of, wrapped};
-use crate::road::Road;
-use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, SearchGrid, places, sweep};
+use crate::road::PreparedCorridor;
+use crate::simulator::{Disturbance, Near, PerUnit, SearchGrid, SimulatedDrive, SimulatedRun, places, sweep};
 
 /// Steps per metre. RK4 is then within 2e-6 m of the limit (`simulator.rs`).
 pub const STEPS_PER_M: usize = 10;
@@ -47,7 +47,7 @@ impl Course {
 
 /// The result of an attack.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct AttackOutcome {
     /// Least clearance found, metres, and its place.
     pub least: Near,
     /// The attack that found it.
@@ -62,12 +62,12 @@ pub struct Outcome {
 
 /// Vehicle, road and plan of one claim.
 pub struct Attack<'a> {
-    pub drive: Drive<'a>,
-    pub(crate) road: Road<'a>,
+    pub drive: SimulatedDrive<'a>,
+    pub(crate) road: PreparedCorridor<'a>,
     pub(crate) calm: Disturbance,
-    pub(crate) nominal: Run,
-    pub(crate) bounds: Bounds,
-    pub(crate) outcome: Outcome,
+    pub(crate) nominal: SimulatedRun,
+    pub(crate) bounds: AdversaryBounds,
+    pub(crate) outcome: AttackOutcome,
 }
 
 /// Distance of the foremost point ahead of the steer axle on the straight, metres.
@@ -90,24 +90,25 @@ pub fn path(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim) -> Path {
 impl<'a> Attack<'a> {
     /// Prepares an attack: drives the path undisturbed.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
-        let drive = Drive::new(vehicle, path, (STEPS_PER_M as f64 * corridor.spacing_m).ceil() as usize);
+        let drive = SimulatedDrive::new(vehicle, path, (STEPS_PER_M as f64 * corridor.spacing_m).ceil() as usize);
         let calm = Disturbance::none(drive.steps());
         let nominal = drive.whole(&calm);
         let slip: PerUnit = std::array::from_fn(|i| vehicle.units.get(i).map_or(0.0, |u| u.sway_rad));
         let steer_m = shrink * vehicle.tracking_tolerance_m;
         let nowhere =
             Near { clearance_m: f64::INFINITY, step: 0, unit: 0, ahead_m: 0.0, side: 1.0, edge: 1.0, foot_m: 0.0 };
-        let outcome = Outcome {
+        let outcome = AttackOutcome {
             least: nowhere,
             by: "nothing",
             undisturbed_m: f64::INFINITY,
             first_order_m: f64::INFINITY,
             hinge: (f64::INFINITY, 0),
         };
-        let bounds = Bounds { steer_m, change_m: 0.0, slip };
-        let mut attack = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
+        let bounds = AdversaryBounds { steer_m, change_m: 0.0, slip };
+        let mut attack = Self { drive, road: PreparedCorridor::new(corridor), calm, nominal, bounds, outcome };
         let range = attack.on_road();
-        let nominal = std::mem::replace(&mut attack.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
+        let nominal =
+            std::mem::replace(&mut attack.nominal, SimulatedRun { first: 0, guide: Vec::new(), headings: Vec::new() });
         attack.measure(&nominal, range, "nothing", Course::Kept);
         attack.nominal = nominal;
         attack.outcome.undisturbed_m = attack.outcome.least.clearance_m;
@@ -116,7 +117,7 @@ impl<'a> Attack<'a> {
 
     /// Runs every attack: at the limiting place, at the worst undisturbed place, at `others` random places, and
     /// unmatched random ones.
-    pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> Outcome {
+    pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> AttackOutcome {
         let worst = self.outcome.least;
         let worst = BodyPoint { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
         self.outcome.first_order_m = self.attack(claim.limiting, Course::Exceeded, "limiting place");
@@ -142,7 +143,7 @@ impl<'a> Attack<'a> {
     }
 
     /// A disturbed run of the steps `first..end` from the undisturbed state at `first`.
-    pub(crate) fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> Run {
+    pub(crate) fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> SimulatedRun {
         self.drive.some(disturbance, first..end, *self.nominal.at(first).1)
     }
 
@@ -181,10 +182,10 @@ impl<'a> Attack<'a> {
         let (step, clearance_m) = self.step_at(&point, aside_m);
         let (_, tangent) = self.road.centre(point.foot_m);
         let push = along([0.0; 2], point.side, left_of(tangent));
-        let target = Target { step, unit: point.unit, ahead_m: point.ahead_m, aside_m, push };
+        let target = PushTarget { step, unit: point.unit, ahead_m: point.ahead_m, aside_m, push };
         let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
         let slope = course.slope(self.bounds.steer_m, self.drive.vehicle);
-        let bounds = Bounds { change_m: slope * per_step, ..self.bounds };
+        let bounds = AdversaryBounds { change_m: slope * per_step, ..self.bounds };
         let first = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
         let near =
             step.saturating_sub(15 * STEPS_PER_M).max(first.first)..(step + 3 * STEPS_PER_M).min(self.drive.steps());
@@ -212,7 +213,7 @@ impl<'a> Attack<'a> {
                 let sign = if self.folded(&self.nominal, step, hinge) < 0.0 { -1.0 } else { 1.0 };
                 let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
                 let change_m = self.drive.vehicle.tracking_heading_rad.tan() * per_step;
-                let bounds = Bounds { change_m, ..self.bounds };
+                let bounds = AdversaryBounds { change_m, ..self.bounds };
                 let kernel = hinge_kernel(&self.drive, &self.nominal, &self.calm, step, self.memory(), hinge, sign);
                 let end = (step + STEPS_PER_M).min(self.drive.steps());
                 let run = self.from(kernel.first, end, &kernel.attack(&bounds, self.drive.steps()));
@@ -223,7 +224,7 @@ impl<'a> Attack<'a> {
 
     /// Articulation of a hinge at a step, positive to the left. For hinge 0, the prime mover's heading against its
     /// course.
-    fn folded(&self, run: &Run, step: usize, hinge: usize) -> f64 {
+    fn folded(&self, run: &SimulatedRun, step: usize, hinge: usize) -> f64 {
         let headings = run.at(step).1;
         if let Some(ahead) = hinge.checked_sub(1) {
             return wrapped(headings[hinge] - headings[ahead]);
@@ -268,7 +269,7 @@ impl<'a> Attack<'a> {
     }
 
     /// Records the least clearance of a run in `range`, and its articulation if the course tolerance was kept.
-    fn measure(&mut self, run: &Run, range: std::ops::Range<usize>, by: &'static str, course: Course) {
+    fn measure(&mut self, run: &SimulatedRun, range: std::ops::Range<usize>, by: &'static str, course: Course) {
         let least = |range: std::ops::Range<usize>, grid: SearchGrid| {
             let mut least: Option<Near> = None;
             sweep(&self.drive, run, &self.road, range, grid, |near| {
@@ -289,7 +290,7 @@ impl<'a> Attack<'a> {
         }
     }
 
-    pub(crate) fn measure_hinges(&mut self, run: &Run, range: std::ops::Range<usize>) {
+    pub(crate) fn measure_hinges(&mut self, run: &SimulatedRun, range: std::ops::Range<usize>) {
         let units = &self.drive.vehicle.units;
         let on_road = self.surely_on_road();
         for step in range.filter(|step| step % 2 == 0 && on_road.contains(step)) {
@@ -337,7 +338,7 @@ impl<'a> Attack<'a> {
 }
 
 /// The least clearance in one line, for failure messages.
-pub fn describe(o: &Outcome) -> String {
+pub fn describe(o: &AttackOutcome) -> String {
     let n = &o.least;
     let side = if n.side > 0.0 { "left" } else { "right" };
     format!(
@@ -353,7 +354,7 @@ pub fn margin_m(
     claim: &Claim,
     draw: &mut Draw,
     others: usize,
-) -> (f64, Outcome) {
+) -> (f64, AttackOutcome) {
     let ride = path(corridor, vehicle, claim);
     let outcome = Attack::new(corridor, vehicle, &ride, claim.shrink).fight(claim, draw, others);
     (outcome.least.clearance_m - claim.rsc_m, outcome)

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-use netcert_base::corridor::{Area, AreaSpan, Corridor};
+use netcert_base::corridor::{AreaSpan, Corridor, PlaneArea};
 use netcert_base::vehicle::Vehicle;
 
 use crate::draw::Draw;
@@ -52,12 +52,12 @@ pub struct Crossing {
     pub split: bool,
     /// Rings inside the area that are no part of it.
     pub islands: Vec<Vec<V2>>,
-    pub pose: Pose,
+    pub pose: CrossingPose,
 }
 
 /// Where a crossing is: mirrored or not, then turned, then moved.
 #[derive(Debug, Clone, Copy)]
-pub struct Pose {
+pub struct CrossingPose {
     pub mirrored: bool,
     pub heading: f64,
     pub at: V2,
@@ -101,7 +101,7 @@ impl Crossing {
             beyond: draw.one_in(3),
             split: draw.one_in(4),
             islands: Vec::new(),
-            pose: Pose {
+            pose: CrossingPose {
                 mirrored: draw.one_in(2),
                 heading: draw.between(-3.0, 3.0),
                 at: [draw.between(-900.0, 900.0), draw.between(-900.0, 900.0)],
@@ -205,22 +205,22 @@ impl Crossing {
     }
 
     /// The whole crossing as one area, before its pose.
-    pub fn unposed(&self) -> Area {
+    pub fn unposed(&self) -> PlaneArea {
         let rings = std::iter::once(self.ring(ARMS_M)).chain(self.islands.iter().cloned());
-        Area { rings: rings.collect() }
+        PlaneArea { rings: rings.collect() }
     }
 
     /// The areas of the crossing: one, or two that overlap.
-    pub fn areas(&self) -> Vec<Area> {
+    pub fn areas(&self) -> Vec<PlaneArea> {
         let posed = |ring: Vec<V2>| ring.into_iter().map(|at| self.pose.place(at)).collect();
         let areas = if self.split {
             let short = self.kerb_ends().map(|end| end.max(8.0) + SHARED_M);
             let parts = [[ARMS_M[0], short[1]], [short[0], ARMS_M[1]]];
-            parts.map(|arms_m| Area { rings: vec![self.ring(arms_m)] }).to_vec()
+            parts.map(|arms_m| PlaneArea { rings: vec![self.ring(arms_m)] }).to_vec()
         } else {
             vec![self.unposed()]
         };
-        areas.into_iter().map(|area| Area { rings: area.rings.into_iter().map(posed).collect() }).collect()
+        areas.into_iter().map(|area| PlaneArea { rings: area.rings.into_iter().map(posed).collect() }).collect()
     }
 
     /// A middle place of the inside kerb, before the pose.
@@ -282,7 +282,7 @@ impl Crossing {
     }
 }
 
-impl Pose {
+impl CrossingPose {
     /// A place of the crossing as it was drawn, where it is.
     pub fn place(&self, [x, y]: V2) -> V2 {
         let u = direction(self.heading);
@@ -338,7 +338,7 @@ fn bend(way: &Manoeuvre, angle: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::area::Ground;
+    use crate::area::AreaBoundary;
     use crate::fleet;
 
     fn cases() -> impl Iterator<Item = (Crossing, Manoeuvre)> {
@@ -376,7 +376,7 @@ mod tests {
     fn the_area_holds_both_roads_and_no_island() {
         for (crossing, _) in cases() {
             let area = crossing.unposed();
-            let ground = Ground::new(&area);
+            let ground = AreaBoundary::new(&area);
             let middle = |[right, left]: [f64; 2]| 0.5 * (right + left);
             let width = |[right, left]: [f64; 2]| left - right;
             let u = direction(crossing.angle);
@@ -401,7 +401,7 @@ mod tests {
     fn what_is_beside_the_lanes_is_closed_away_from_the_crossing_only() {
         let strips = [[-5.0, 5.0], [-4.0, 4.0]];
         let lanes = [[-5.0, 0.5], [-4.0, 4.0]];
-        let pose = Pose { mirrored: false, heading: 0.0, at: [0.0; 2] };
+        let pose = CrossingPose { mirrored: false, heading: 0.0, at: [0.0; 2] };
         let open = Crossing {
             strips,
             lanes,
@@ -413,7 +413,7 @@ mod tests {
             pose,
         };
         let closed = Crossing { islands: open.beside_lanes(), ..open.clone() };
-        let room = |crossing: &Crossing, at: V2| Ground::new(&crossing.unposed()).room(at).0;
+        let room = |crossing: &Crossing, at: V2| AreaBoundary::new(&crossing.unposed()).room(at).0;
         assert_eq!(closed.islands.len(), 1, "the second road's lanes are all of it");
         for (at, before, after) in [([-30.0, -2.0], 3.0, 2.5), ([-30.0, 2.5], 2.5, -2.0), ([0.0, 40.0], 4.0, 4.0)] {
             assert!((room(&open, at) - before).abs() < 1e-6);
@@ -425,8 +425,8 @@ mod tests {
     #[test]
     fn the_two_areas_of_a_split_crossing_cover_it() {
         for (crossing, _) in cases().filter(|(crossing, _)| crossing.split) {
-            let whole = Ground::new(&Crossing { split: false, ..crossing.clone() }.areas()[0]);
-            let parts: Vec<Ground> = crossing.areas().iter().map(Ground::new).collect();
+            let whole = AreaBoundary::new(&Crossing { split: false, ..crossing.clone() }.areas()[0]);
+            let parts: Vec<AreaBoundary> = crossing.areas().iter().map(AreaBoundary::new).collect();
             let mut draw = Draw(3);
             for _ in 0..500 {
                 let at = crossing.pose.place([draw.between(-60.0, 30.0), draw.between(-30.0, 60.0)]);

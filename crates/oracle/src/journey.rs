@@ -9,14 +9,14 @@ use std::ops::Range;
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
-use crate::adversary::{Bounds, Target, kernel};
-use crate::area_attack::{AreaAttack, Found, Scope};
+use crate::adversary::{AdversaryBounds, PushTarget, kernel};
+use crate::area_attack::{AreaAttack, AreaAttackOutcome, Scope};
 use crate::attack::{Course, STEPS_PER_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
+use crate::least_room::Stretch;
 use crate::path::{Path, along, left_of};
-use crate::simulator::{Near, Run, SearchGrid, sweep};
-use crate::swept::Stretch;
+use crate::simulator::{Near, SearchGrid, SimulatedRun, sweep};
 
 /// The steps and body points that are searched for places to attack.
 const COARSE: SearchGrid = SearchGrid { stride: 5, pitch_m: 0.5 };
@@ -48,7 +48,7 @@ impl<'a> Journey<'a> {
 
     /// Attacks the claim about the whole route: at the `places` worst places of every area and of every stretch between
     /// areas, then its hinges and with noise.
-    pub fn attack_whole(&mut self, claim: &Claim, draw: &mut Draw, places: usize) -> Found {
+    pub fn attack_whole(&mut self, claim: &Claim, draw: &mut Draw, places: usize) -> AreaAttackOutcome {
         self.begin(claim.shrink, Scope::whole());
         self.attack(self.areas.attack.on_road(), places);
         let areas = &mut self.areas;
@@ -62,7 +62,7 @@ impl<'a> Journey<'a> {
 
     /// Attacks the claim about a part. Where half-widths count it is about body points whose feet are on the part. In
     /// areas it is about all bodies while some body is on the part.
-    pub fn attack_part(&mut self, part: &PartClaim, places: usize) -> Found {
+    pub fn attack_part(&mut self, part: &PartClaim, places: usize) -> AreaAttackOutcome {
         let vehicle = self.areas.attack.drive.vehicle;
         let front_m = vehicle.units[0].front_overhang_m;
         let heads_m = (part.from_m - front_m, part.to_m + vehicle.length_m - front_m);
@@ -106,7 +106,7 @@ impl<'a> Journey<'a> {
     }
 
     /// The body points that the adversary gets farthest over an edge of the corridor at first order.
-    fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<Target> {
+    fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<PushTarget> {
         let AreaAttack { attack, scope, found, .. } = &mut self.areas;
         let mut worst: Vec<Near> = Vec::new();
         for from in steps.clone().step_by(APART_STEPS) {
@@ -136,11 +136,11 @@ impl<'a> Journey<'a> {
             let (_, tangent) = attack.road.centre(near.foot_m);
             let push = along([0.0; 2], near.edge, left_of(tangent));
             let aside_m = near.side * 0.5 * attack.drive.vehicle.units[near.unit].width_m;
-            let target = Target { step: near.step, unit: near.unit, ahead_m: near.ahead_m, aside_m, push };
+            let target = PushTarget { step: near.step, unit: near.unit, ahead_m: near.ahead_m, aside_m, push };
             let kernel = kernel(&attack.drive, &attack.nominal, &attack.calm, &target, attack.memory());
             (near.clearance_m - kernel.reach_m(&attack.bounds), target)
         };
-        let mut reached: Vec<(f64, Target)> = worst.iter().map(reached).collect();
+        let mut reached: Vec<(f64, PushTarget)> = worst.iter().map(reached).collect();
         reached.sort_by(|a, b| a.0.total_cmp(&b.0));
         reached.truncate(places);
         found.first_order_m = reached.first().map_or(found.first_order_m, |first| first.0.min(found.first_order_m));
@@ -148,14 +148,14 @@ impl<'a> Journey<'a> {
     }
 
     /// Pushes a body point twice: linearised about the undisturbed run, then about the attacked run.
-    fn push(&mut self, target: &Target, course: Course) {
+    fn push(&mut self, target: &PushTarget, course: Course) {
         let areas = &mut self.areas;
         let (attack, memory) = (&areas.attack, areas.attack.memory());
         let steps = attack.drive.steps();
         let per_step = attack.drive.path.spacing_m / attack.drive.steps_per_span as f64;
         let slope = course.slope(attack.bounds.steer_m, attack.drive.vehicle);
-        let bounds = Bounds { change_m: slope * per_step, ..attack.bounds };
-        let mut attacked: Option<(Run, _)> = None;
+        let bounds = AdversaryBounds { change_m: slope * per_step, ..attack.bounds };
+        let mut attacked: Option<(SimulatedRun, _)> = None;
         for _ in 0..2 {
             let attack = &areas.attack;
             let (run, before) = attacked.as_ref().map_or((&attack.nominal, &attack.calm), |(run, d)| (run, d));

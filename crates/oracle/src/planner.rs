@@ -5,7 +5,7 @@
 
 use netcert_base::vehicle::Vehicle;
 
-use crate::area::{Body, Ground};
+use crate::area::{AreaBoundary, Body};
 use crate::crossing::{Crossing, Manoeuvre, SPACING_M};
 use crate::draw::Draw;
 use crate::path::{V2, along, direction, dot, left_of, wrapped};
@@ -83,7 +83,7 @@ pub fn room_m(crossing: &Crossing, vehicle: &Vehicle, way: &Manoeuvre) -> f64 {
 struct Test<'a> {
     crossing: &'a Crossing,
     vehicle: &'a Vehicle,
-    ground: Ground,
+    ground: AreaBoundary,
     /// Rooms at the corners of cells, NaN where none is known yet.
     rooms: Vec<f64>,
     origin: V2,
@@ -91,7 +91,7 @@ struct Test<'a> {
 
 impl<'a> Test<'a> {
     fn new(crossing: &'a Crossing, vehicle: &'a Vehicle) -> Self {
-        let ground = Ground::new(&crossing.unposed());
+        let ground = AreaBoundary::new(&crossing.unposed());
         let origin = crossing.inside().map(|x| x - SQUARE_M);
         Self { crossing, vehicle, ground, rooms: vec![f64::NAN; cells() * cells()], origin }
     }
@@ -275,9 +275,9 @@ impl<'a> Ride<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::least_room::PathAreas;
     use crate::path::Path;
-    use crate::simulator::{Disturbance, Drive};
-    use crate::swept::Grounds;
+    use crate::simulator::{Disturbance, SimulatedDrive};
     use crate::{attack, fleet};
 
     fn cases() -> impl Iterator<Item = (Crossing, Draw)> {
@@ -298,9 +298,9 @@ mod tests {
             let plan: Vec<V2> = corridor.x.iter().zip(&corridor.y).map(|(x, y)| [*x, *y]).collect();
             let headings = (corridor.heading[0], corridor.heading[corridor.len() - 1]);
             let path = Path::through(&plan, SPACING_M, headings, 60.0, 40.0);
-            let drive = Drive::new(&vehicle, &path, attack::STEPS_PER_M / 2);
+            let drive = SimulatedDrive::new(&vehicle, &path, attack::STEPS_PER_M / 2);
             let run = drive.whole(&Disturbance::none(drive.steps()));
-            let swept = Grounds::new(&corridor, &drive).least(&drive, &run, run.steps()).unwrap().room_m;
+            let swept = PathAreas::new(&corridor, &drive).least(&drive, &run, run.steps()).unwrap().room_m;
             // Without the hinges' limits, of which the simulator knows nothing.
             let mut loose = vehicle.clone();
             loose.units.iter_mut().for_each(|unit| unit.max_articulation_rad = 3.0);

@@ -12,14 +12,14 @@ const NODES: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// A corridor, prepared for locating points on it.
-pub struct Road<'a> {
+pub struct PreparedCorridor<'a> {
     corridor: &'a Corridor,
     tangents: Vec<V2>,
 }
 
 /// A point relative to the corridor.
 #[derive(Debug, Clone, Copy)]
-pub struct Located {
+pub struct LocatedPoint {
     pub foot_m: f64,
     pub lateral_m: f64,
     /// Clearance to the left edge along the normal at the foot, then to the right edge, metres.
@@ -27,7 +27,7 @@ pub struct Located {
     pub right_m: f64,
 }
 
-impl<'a> Road<'a> {
+impl<'a> PreparedCorridor<'a> {
     pub fn new(corridor: &'a Corridor) -> Self {
         Self { corridor, tangents: corridor.heading.iter().map(|&h| direction(h)).collect() }
     }
@@ -77,7 +77,7 @@ impl<'a> Road<'a> {
 
     /// The foot of `point` to 1e-9 m, by Newton's method from `guess`. `guess` may be off by some tens of degrees of
     /// the curve.
-    pub fn locate(&self, point: V2, guess: f64) -> Located {
+    pub fn locate(&self, point: V2, guess: f64) -> LocatedPoint {
         let mut s = guess;
         let mut lateral_m = 0.0;
         for _ in 0..12 {
@@ -93,7 +93,7 @@ impl<'a> Road<'a> {
         }
         let left_m = self.value(&self.corridor.left_m, s) - lateral_m;
         let right_m = self.value(&self.corridor.right_m, s) + lateral_m;
-        Located { foot_m: s, lateral_m, left_m, right_m }
+        LocatedPoint { foot_m: s, lateral_m, left_m, right_m }
     }
 }
 

@@ -7,7 +7,7 @@
 use netcert_base::vehicle::Vehicle;
 
 use crate::path::{Path, V2, along, direction, dot, left_of};
-use crate::road::Road;
+use crate::road::PreparedCorridor;
 
 /// Most units of a vehicle in the tests.
 pub const MAX_UNITS: usize = 8;
@@ -30,7 +30,7 @@ impl Disturbance {
 }
 
 /// A vehicle on a path. The guided point follows the path; it is `guide_m` left of the steer axle's centre.
-pub struct Drive<'a> {
+pub struct SimulatedDrive<'a> {
     pub vehicle: &'a Vehicle,
     pub path: &'a Path,
     pub steps_per_span: usize,
@@ -38,13 +38,13 @@ pub struct Drive<'a> {
 }
 
 /// Guided point and headings at the end points of the steps from `first` on.
-pub struct Run {
+pub struct SimulatedRun {
     pub first: usize,
     pub guide: Vec<V2>,
     pub headings: Vec<PerUnit>,
 }
 
-impl Run {
+impl SimulatedRun {
     /// Steps at whose end points the state is known.
     pub fn steps(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.headings.len()
@@ -56,7 +56,7 @@ impl Run {
     }
 }
 
-impl<'a> Drive<'a> {
+impl<'a> SimulatedDrive<'a> {
     /// A drive whose steer axle's centre follows the path.
     pub fn new(vehicle: &'a Vehicle, path: &'a Path, steps_per_span: usize) -> Self {
         Self { vehicle, path, steps_per_span, guide_m: 0.0 }
@@ -68,14 +68,14 @@ impl<'a> Drive<'a> {
     }
 
     /// Drives the whole path, starting straight at its beginning.
-    pub fn whole(&self, disturbance: &Disturbance) -> Run {
+    pub fn whole(&self, disturbance: &Disturbance) -> SimulatedRun {
         let start = self.path.jet(0, 0.0).first;
         self.some(disturbance, 0..self.steps(), [start[1].atan2(start[0]); MAX_UNITS])
     }
 
     /// Drives the steps `range`, starting with headings `from`.
-    pub fn some(&self, disturbance: &Disturbance, range: std::ops::Range<usize>, from: PerUnit) -> Run {
-        let mut run = Run { first: range.start, guide: Vec::new(), headings: Vec::new() };
+    pub fn some(&self, disturbance: &Disturbance, range: std::ops::Range<usize>, from: PerUnit) -> SimulatedRun {
+        let mut run = SimulatedRun { first: range.start, guide: Vec::new(), headings: Vec::new() };
         let mut state = from;
         for step in range {
             run.guide.push(self.guide_at(disturbance, step, 0.0));
@@ -199,9 +199,9 @@ pub struct SearchGrid {
 /// Visits body points at the steps of `range` that the grid has: all corners, and points along both sides. A point
 /// counts against *both* edges if its foot lies on the corridor.
 pub fn sweep(
-    drive: &Drive<'_>,
-    run: &Run,
-    road: &Road<'_>,
+    drive: &SimulatedDrive<'_>,
+    run: &SimulatedRun,
+    road: &PreparedCorridor<'_>,
     range: std::ops::Range<usize>,
     grid: SearchGrid,
     mut visit: impl FnMut(Near),
@@ -237,7 +237,12 @@ pub fn sweep(
 }
 
 /// Feet of the axles at the start of a search, found one after the other back from the steer axle.
-fn first_feet(drive: &Drive<'_>, road: &Road<'_>, step: usize, axles: &[V2; MAX_UNITS]) -> PerUnit {
+fn first_feet(
+    drive: &SimulatedDrive<'_>,
+    road: &PreparedCorridor<'_>,
+    step: usize,
+    axles: &[V2; MAX_UNITS],
+) -> PerUnit {
     let span = step as f64 / drive.steps_per_span as f64 + 1.0 - drive.path.lead_in as f64;
     let mut guess = span * drive.path.spacing_m;
     let mut feet = [0.0; MAX_UNITS];

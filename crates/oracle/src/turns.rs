@@ -7,8 +7,8 @@ use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
 
 use crate::path::{Path, V2, along, direction, dot, left_of};
-use crate::road::{self, Road};
-use crate::simulator::{Disturbance, Drive, Run, SearchGrid, sweep};
+use crate::road::{self, PreparedCorridor};
+use crate::simulator::{Disturbance, SearchGrid, SimulatedDrive, SimulatedRun, sweep};
 
 /// Distance between the vertices of a turn's path, metres.
 const PITCH_M: f64 = 0.1;
@@ -67,8 +67,8 @@ impl Turn {
 }
 
 /// The least distance of the inner end of the last axle from the arc's centre over the whole turn and its exit.
-pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &Run) -> f64 {
-    let drive = Drive::new(vehicle, &turn.path, 1);
+pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &SimulatedRun) -> f64 {
+    let drive = SimulatedDrive::new(vehicle, &turn.path, 1);
     let last = vehicle.units.len() - 1;
     let inner_end = |step: usize| {
         let (guide, headings) = run.at(step);
@@ -78,16 +78,16 @@ pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &Run) -> f64 {
 }
 
 /// An undisturbed run of the turn with one step per vertex.
-pub fn drive(vehicle: &Vehicle, turn: &Turn, guide_m: f64) -> Run {
-    let drive = Drive { guide_m, ..Drive::new(vehicle, &turn.path, 1) };
+pub fn drive(vehicle: &Vehicle, turn: &Turn, guide_m: f64) -> SimulatedRun {
+    let drive = SimulatedDrive { guide_m, ..SimulatedDrive::new(vehicle, &turn.path, 1) };
     drive.whole(&Disturbance::none(drive.steps()))
 }
 
 /// Largest inward distance of each axle's centre from the path, over the whole manoeuvre.
 pub fn offtracking_m(vehicle: &Vehicle, turn: &Turn) -> Vec<f64> {
     let run = drive(vehicle, turn, 0.0);
-    let drive = Drive::new(vehicle, &turn.path, 1);
-    let road = Road::new(&turn.guide);
+    let drive = SimulatedDrive::new(vehicle, &turn.path, 1);
+    let road = PreparedCorridor::new(&turn.guide);
     let mut most = vec![0.0f64; vehicle.units.len()];
     let mut feet: Vec<f64> = Vec::new();
     for step in run.steps() {
@@ -109,8 +109,8 @@ pub fn offtracking_m(vehicle: &Vehicle, turn: &Turn) -> Vec<f64> {
 pub fn swept_width_m(vehicle: &Vehicle, turn: &Turn) -> f64 {
     let guide_m = -0.5 * vehicle.units[0].width_m;
     let run = drive(vehicle, turn, guide_m);
-    let drive = Drive { guide_m, ..Drive::new(vehicle, &turn.path, 1) };
-    let road = Road::new(&turn.guide);
+    let drive = SimulatedDrive { guide_m, ..SimulatedDrive::new(vehicle, &turn.path, 1) };
+    let road = PreparedCorridor::new(&turn.guide);
     let bin_m = 0.2;
     let bins = (road.length_m() / bin_m) as usize + 1;
     let mut extent = vec![(f64::INFINITY, f64::NEG_INFINITY); bins];
@@ -132,8 +132,8 @@ pub fn steer_radius_m(vehicle: &Vehicle, outer_m: f64) -> f64 {
 }
 
 /// Least and greatest distance of any body point from the arc's centre, between two turned angles.
-pub fn ring_m(vehicle: &Vehicle, turn: &Turn, run: &Run, angles: (f64, f64)) -> (f64, f64) {
-    let drive = Drive::new(vehicle, &turn.path, 1);
+pub fn ring_m(vehicle: &Vehicle, turn: &Turn, run: &SimulatedRun, angles: (f64, f64)) -> (f64, f64) {
+    let drive = SimulatedDrive::new(vehicle, &turn.path, 1);
     let centre = [0.0, turn.radius_m];
     let mut ring = (f64::INFINITY, 0.0f64);
     for step in turn.span_at(angles.0)..turn.span_at(angles.1) {

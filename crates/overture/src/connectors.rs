@@ -3,26 +3,26 @@
 use rustc_hash::FxHashMap;
 
 use super::account::{Account, CONNECTOR};
-use super::ids::Key;
+use super::ids::FeatureKey;
 use crate::osm::{LonLat, NodeId};
 
 /// Where connectors are.
 #[derive(Debug, Default)]
 pub(super) struct Connectors {
-    places: FxHashMap<Key, LonLat>,
+    places: FxHashMap<FeatureKey, LonLat>,
     read: u64,
 }
 
 impl Connectors {
     /// Adds connectors. Of several with the same id the first one counts; files of neighbouring places repeat them.
-    pub(super) fn add(&mut self, some: Vec<(Key, LonLat)>) {
+    pub(super) fn add(&mut self, some: Vec<(FeatureKey, LonLat)>) {
         self.read += some.len() as u64;
         for (key, place) in some {
             self.places.entry(key).or_insert(place);
         }
     }
 
-    pub(super) fn place(&self, key: Key) -> Option<LonLat> {
+    pub(super) fn place(&self, key: FeatureKey) -> Option<LonLat> {
         self.places.get(&key).copied()
     }
 

@@ -14,7 +14,7 @@ pub struct OvertureError {
     pub id: Option<String>,
     /// The fault.
     #[source]
-    pub problem: Problem,
+    pub problem: OvertureProblem,
 }
 
 /// A place in a file. Numbers count from 0.
@@ -33,7 +33,7 @@ pub enum FilePosition {
 /// The fault.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Problem {
+pub enum OvertureProblem {
     /// An error of the operating system.
     #[error("cannot read: {0}")]
     Io(#[from] std::io::Error),
@@ -89,7 +89,7 @@ pub enum Problem {
 }
 
 impl OvertureError {
-    pub(super) fn of_file(path: &Path, problem: impl Into<Problem>) -> Self {
+    pub(super) fn of_file(path: &Path, problem: impl Into<OvertureProblem>) -> Self {
         Self { path: path.to_owned(), position: FilePosition::File, id: None, problem: problem.into() }
     }
 }
@@ -110,7 +110,7 @@ impl fmt::Display for OvertureError {
     }
 }
 
-impl Problem {
+impl OvertureProblem {
     /// What the user can do.
     #[must_use]
     pub fn way_out(&self) -> &'static str {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use super::error::{OvertureError, Problem};
+use super::error::{OvertureError, OvertureProblem};
 use crate::folders::files_below;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,11 +49,14 @@ pub(super) fn find(inputs: &[&Path]) -> Result<(Vec<(PathBuf, Format)>, String),
         if input.is_dir() {
             walk(input, &mut files)?;
             if files.len() == before {
-                return Err(OvertureError::of_file(input, Problem::EmptyFolder));
+                return Err(OvertureError::of_file(input, OvertureProblem::EmptyFolder));
             }
         } else {
             let format = format(input).map_err(|e| OvertureError::of_file(input, e))?;
-            files.push((input.to_owned(), format.ok_or_else(|| OvertureError::of_file(input, Problem::OtherFormat))?));
+            files.push((
+                input.to_owned(),
+                format.ok_or_else(|| OvertureError::of_file(input, OvertureProblem::OtherFormat))?,
+            ));
         }
     }
     files.sort_by(|a, b| a.0.cmp(&b.0));

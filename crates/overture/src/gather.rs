@@ -6,20 +6,20 @@ use rayon::prelude::*;
 
 use super::account::{Account, SEGMENT};
 use super::connectors::Connectors;
-use super::error::{OvertureError, Problem};
-use super::segment::Road;
+use super::error::{OvertureError, OvertureProblem};
+use super::segment::RoadSegment;
 use super::turns;
 use crate::osm::{Extract, LonLat, NodeId, NodeTable, StringPool, Way};
 use crate::rows::SegmentRow;
 
 /// Makes the extract, and says which segment each way is of. `path` names the source in errors.
 pub(super) fn extract(
-    mut roads: Vec<Road>,
+    mut roads: Vec<RoadSegment>,
     connectors: &Connectors,
     account: &mut Account,
     path: &Path,
 ) -> Result<(Extract, Vec<SegmentRow>), OvertureError> {
-    let failed = |problem: Problem| OvertureError::of_file(path, problem);
+    let failed = |problem: OvertureProblem| OvertureError::of_file(path, problem);
     roads.par_sort_by_key(|road| (road.key.number(), road.key));
     let before = roads.len();
     roads.dedup_by_key(|road| road.key);
@@ -35,7 +35,7 @@ pub(super) fn extract(
     parts.par_sort_unstable();
     if let Some(pair) = parts.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         let [one, other] = [&pair[0], &pair[1]].map(|part| roads[part.1 as usize].id.to_string());
-        let problem = Problem::Collision { number: pair[0].0, other };
+        let problem = OvertureProblem::Collision { number: pair[0].0, other };
         return Err(OvertureError { id: Some(one), ..failed(problem) });
     }
 
@@ -45,7 +45,8 @@ pub(super) fn extract(
     let mut segments = Vec::with_capacity(parts.len());
     for &(id, index, from, to) in &parts {
         let road = &roads[index as usize];
-        let begin = u32::try_from(extract.refs.len()).map_err(|_| failed(Problem::TooLarge("node references")))?;
+        let begin =
+            u32::try_from(extract.refs.len()).map_err(|_| failed(OvertureProblem::TooLarge("node references")))?;
         for (&node, &place) in road.line.nodes[from..=to].iter().zip(&road.line.places[from..=to]) {
             places.push((node, place));
             // A connector that is named twice may be on two vertices in a row.
@@ -57,7 +58,8 @@ pub(super) fn extract(
             extract.refs.truncate(begin as usize);
             continue;
         }
-        let end = u32::try_from(extract.refs.len()).map_err(|_| failed(Problem::TooLarge("node references")))?;
+        let end =
+            u32::try_from(extract.refs.len()).map_err(|_| failed(OvertureProblem::TooLarge("node references")))?;
         let Some((.., (facts, reference))) = road.parts().find(|part| part.0 == from) else { continue };
         let mut facts = facts.clone();
         facts.name = road.name.as_deref().map(|name| strings.intern(name));
@@ -73,13 +75,16 @@ pub(super) fn extract(
 }
 
 /// The table of nodes. A connector that no file has lies where the first road has it; elsewhere it would be another node.
-fn nodes(mut places: Vec<(NodeId, LonLat)>) -> Result<NodeTable, Problem> {
+fn nodes(mut places: Vec<(NodeId, LonLat)>) -> Result<NodeTable, OvertureProblem> {
     places.par_sort_unstable();
     places.dedup();
     let near = |a: LonLat, b: LonLat| a.lon_e7.abs_diff(b.lon_e7).max(a.lat_e7.abs_diff(b.lat_e7)) <= NEAR_E7;
     if let Some(pair) = places.windows(2).find(|pair| pair[0].0 == pair[1].0 && !near(pair[0].1, pair[1].1)) {
         let ((lon, lat), number) = (pair[1].1.degrees(), pair[0].0);
-        return Err(Problem::Collision { number: number.get(), other: format!("the node at {lon:.7}, {lat:.7}") });
+        return Err(OvertureProblem::Collision {
+            number: number.get(),
+            other: format!("the node at {lon:.7}, {lat:.7}"),
+        });
     }
     places.dedup_by_key(|(id, _)| *id);
     let (ids, places) = places.into_iter().map(|(id, place)| (id, Some(place))).unzip();

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
-use super::error::{FilePosition, OvertureError, Problem};
+use super::error::{FilePosition, OvertureError, OvertureProblem};
 
 /// A feature.
 #[derive(Deserialize)]
@@ -39,11 +39,13 @@ impl Feature {
     ///
     /// # Errors
     /// It is missing or no text.
-    pub(super) fn id(&self) -> Result<String, Problem> {
+    pub(super) fn id(&self) -> Result<String, OvertureProblem> {
         match &self.id {
             Value::String(id) => Ok(id.clone()),
-            Value::Null => Err(Problem::Value("a feature without id".to_owned())),
-            other => Err(Problem::Type { property: "id".to_owned(), detail: format!("it is {other}, and not text") }),
+            Value::Null => Err(OvertureProblem::Value("a feature without id".to_owned())),
+            other => {
+                Err(OvertureProblem::Type { property: "id".to_owned(), detail: format!("it is {other}, and not text") })
+            }
         }
     }
 }
@@ -51,7 +53,7 @@ impl Feature {
 /// Calls `take` for each feature of a file.
 pub(super) fn each(
     path: &Path,
-    take: &mut dyn FnMut(Feature) -> Result<(), (Option<String>, Problem)>,
+    take: &mut dyn FnMut(Feature) -> Result<(), (Option<String>, OvertureProblem)>,
 ) -> Result<(), OvertureError> {
     let file = File::open(path).map_err(|e| OvertureError::of_file(path, e))?;
     let mut walk = Walk { take, number: 0, failed: None };
@@ -62,18 +64,21 @@ pub(super) fn each(
     match (done, failed) {
         (_, Some(failed)) => Err(at(FilePosition::Feature(number), failed)),
         // The text is JSON, but not of the form of features.
-        (Err(error), None) if error.is_data() => {
-            Err(at(FilePosition::Feature(number), (None, Problem::Value(format!("no GeoJSON of features: {error}")))))
+        (Err(error), None) if error.is_data() => Err(at(
+            FilePosition::Feature(number),
+            (None, OvertureProblem::Value(format!("no GeoJSON of features: {error}"))),
+        )),
+        (Err(error), None) => {
+            Err(at(FilePosition::Feature(number), (None, OvertureProblem::Damaged(error.to_string()))))
         }
-        (Err(error), None) => Err(at(FilePosition::Feature(number), (None, Problem::Damaged(error.to_string())))),
         (Ok(()), None) => Ok(()),
     }
 }
 
 struct Walk<'t> {
-    take: &'t mut dyn FnMut(Feature) -> Result<(), (Option<String>, Problem)>,
+    take: &'t mut dyn FnMut(Feature) -> Result<(), (Option<String>, OvertureProblem)>,
     number: usize,
-    failed: Option<(Option<String>, Problem)>,
+    failed: Option<(Option<String>, OvertureProblem)>,
 }
 
 impl<'de> DeserializeSeed<'de> for &mut Walk<'_> {

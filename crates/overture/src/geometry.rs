@@ -2,57 +2,57 @@
 
 use serde_json::Value;
 
-use super::error::Problem;
+use super::error::OvertureProblem;
 use crate::osm::LonLat;
 use crate::shape::{Shape, Xy, from_wkb, position};
 
 /// The positions of a line string in well-known binary. Heights are left aside.
-pub(super) fn line(wkb: &[u8]) -> Result<Vec<LonLat>, Problem> {
-    match from_wkb(wkb).map_err(Problem::Geometry)? {
+pub(super) fn line(wkb: &[u8]) -> Result<Vec<LonLat>, OvertureProblem> {
+    match from_wkb(wkb).map_err(OvertureProblem::Geometry)? {
         Some(Shape::Line(line)) => line.into_iter().map(place).collect(),
         other => Err(no("line string", other.as_ref())),
     }
 }
 
 /// The position of a point in well-known binary.
-pub(super) fn point(wkb: &[u8]) -> Result<LonLat, Problem> {
-    match from_wkb(wkb).map_err(Problem::Geometry)? {
+pub(super) fn point(wkb: &[u8]) -> Result<LonLat, OvertureProblem> {
+    match from_wkb(wkb).map_err(OvertureProblem::Geometry)? {
         Some(Shape::Point(at)) => place(at),
         other => Err(no("point", other.as_ref())),
     }
 }
 
-fn no(wanted: &str, found: Option<&Shape>) -> Problem {
+fn no(wanted: &str, found: Option<&Shape>) -> OvertureProblem {
     let found = match found {
         None => "nothing",
         Some(Shape::Point(_)) => "a point",
         Some(Shape::Line(_)) => "a line string",
         Some(Shape::Polygon(_)) => "a polygon",
     };
-    Problem::Geometry(format!("{found} in place of a {wanted}"))
+    OvertureProblem::Geometry(format!("{found} in place of a {wanted}"))
 }
 
-fn place(at: Xy) -> Result<LonLat, Problem> {
-    position(at).map_err(Problem::Geometry)
+fn place(at: Xy) -> Result<LonLat, OvertureProblem> {
+    position(at).map_err(OvertureProblem::Geometry)
 }
 
 /// The positions of a GeoJSON geometry of this type.
-pub(super) fn of_json(geometry: &Value, wanted: &str) -> Result<Vec<LonLat>, Problem> {
+pub(super) fn of_json(geometry: &Value, wanted: &str) -> Result<Vec<LonLat>, OvertureProblem> {
     let kind = geometry.get("type").and_then(Value::as_str).unwrap_or("nothing");
     if kind != wanted {
-        return Err(Problem::Geometry(format!("{kind} in place of {wanted}")));
+        return Err(OvertureProblem::Geometry(format!("{kind} in place of {wanted}")));
     }
     let position = |value: &Value| match value.as_array().map(Vec::as_slice) {
         Some([lon, lat, ..]) => match [lon.as_f64(), lat.as_f64()] {
             [Some(lon), Some(lat)] => place([lon, lat]),
-            _ => Err(Problem::Geometry(format!("a position of {lon} and {lat}, which are not two numbers"))),
+            _ => Err(OvertureProblem::Geometry(format!("a position of {lon} and {lat}, which are not two numbers"))),
         },
-        _ => Err(Problem::Geometry("a position without two numbers".to_owned())),
+        _ => Err(OvertureProblem::Geometry("a position without two numbers".to_owned())),
     };
     let coordinates = geometry.get("coordinates").unwrap_or(&Value::Null);
     match (wanted, coordinates.as_array()) {
         ("LineString", Some(positions)) => positions.iter().map(position).collect(),
-        ("LineString", None) => Err(Problem::Geometry("coordinates that are no list".to_owned())),
+        ("LineString", None) => Err(OvertureProblem::Geometry("coordinates that are no list".to_owned())),
         _ => Ok(vec![position(coordinates)?]),
     }
 }

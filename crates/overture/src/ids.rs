@@ -7,12 +7,12 @@ use sha2::{Digest as _, Sha256};
 
 /// A feature's id in 128 bits: two ids have the same key only if they are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Key {
+pub(super) struct FeatureKey {
     hash: u128,
     number: i64,
 }
 
-impl Key {
+impl FeatureKey {
     pub(super) fn segment(id: &str) -> Self {
         Self::new(id, "w")
     }
@@ -57,12 +57,14 @@ mod tests {
     #[test]
     fn numbers_are_those_that_the_documentation_gives() {
         // python3 -c 'import hashlib; print(int(hashlib.sha256(b"0a1b").hexdigest()[:16], 16) >> 2)'
-        assert_eq!(Key::segment("0a1b").number(), 4_404_467_892_295_702_980);
-        assert_eq!((Key::segment("w17").number(), Key::connector("n17").number()), (17, 17));
+        assert_eq!(FeatureKey::segment("0a1b").number(), 4_404_467_892_295_702_980);
+        assert_eq!((FeatureKey::segment("w17").number(), FeatureKey::connector("n17").number()), (17, 17));
         assert!(
-            [Key::segment("n17"), Key::segment("w17.1"), Key::segment("w-7")].iter().all(|key| key.number() > 1 << 40)
+            [FeatureKey::segment("n17"), FeatureKey::segment("w17.1"), FeatureKey::segment("w-7")]
+                .iter()
+                .all(|key| key.number() > 1 << 40)
         );
-        let key = Key::connector("c");
+        let key = FeatureKey::connector("c");
         assert!(key.of_part([1, 2]) > 0 && key.of_part([1, 2]) != key.of_part([2, 1]));
     }
 }

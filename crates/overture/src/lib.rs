@@ -28,16 +28,16 @@ mod turns;
 use std::path::{Path, PathBuf};
 
 pub use account::Account;
-pub use error::{FilePosition, OvertureError, Problem};
+pub use error::{FilePosition, OvertureError, OvertureProblem};
 pub use files::{hash, is_source};
 
 use crate::osm::Extract;
 use crate::rows::SegmentRow;
 use connectors::Connectors;
 use files::Format;
-use ids::Key;
-use parquet::{Kind, Table};
-use segment::{Feature, Road};
+use ids::FeatureKey;
+use parquet::{Kind, ParquetTable};
+use segment::{RoadSegment, SegmentFeature};
 
 /// What was read.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
     let (files, hash) = files::find(inputs)?;
     let mut tables = Vec::new();
     for (path, _) in files.iter().filter(|(_, format)| *format == Format::Parquet) {
-        tables.push(Table::open(path)?);
+        tables.push(ParquetTable::open(path)?);
     }
     let drawn: Vec<&PathBuf> =
         files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
@@ -81,14 +81,14 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
 }
 
 /// The connectors of all files. Fails if there are no connectors or no segments, of which `first` is told.
-fn read_connectors(tables: &[Table<'_>], drawn: &[&PathBuf], first: &Path) -> Result<Connectors, OvertureError> {
+fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[&PathBuf], first: &Path) -> Result<Connectors, OvertureError> {
     let mut connectors = Connectors::default();
     let (mut of_connectors, mut of_segments) = (false, false);
     for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {
         of_connectors = true;
         let groups = table.each(|some, record| {
             let place = geometry::point(&record.geometry).map_err(|problem| (Some(record.id.clone()), problem))?;
-            some.push((Key::connector(&record.id), place));
+            some.push((FeatureKey::connector(&record.id), place));
             Ok(())
         })?;
         groups.into_iter().for_each(|some| connectors.add(some));
@@ -101,15 +101,16 @@ fn read_connectors(tables: &[Table<'_>], drawn: &[&PathBuf], first: &Path) -> Re
                     of_segments = true;
                     return Ok(());
                 }
-                _ => return Err((feature.id().ok(), Problem::OtherFeatures(feature.kind_as_written()))),
+                _ => return Err((feature.id().ok(), OvertureProblem::OtherFeatures(feature.kind_as_written()))),
             }
             let (id, place) = id_and(feature, |feature| geometry::of_json(&feature.geometry, "Point"))?;
-            connectors.add(place.first().map(|place| (Key::connector(&id), *place)).into_iter().collect());
+            connectors.add(place.first().map(|place| (FeatureKey::connector(&id), *place)).into_iter().collect());
             Ok(())
         })?;
     }
     of_segments |= tables.iter().any(|table| table.kind == Kind::Segments);
-    for (there, problem) in [(of_segments, Problem::NoSegments), (of_connectors, Problem::NoConnectors)] {
+    for (there, problem) in [(of_segments, OvertureProblem::NoSegments), (of_connectors, OvertureProblem::NoConnectors)]
+    {
         if !there {
             return Err(OvertureError::of_file(first, problem));
         }
@@ -119,19 +120,19 @@ fn read_connectors(tables: &[Table<'_>], drawn: &[&PathBuf], first: &Path) -> Re
 
 /// The roads of all segments. What becomes of each segment is added to the account.
 fn read_roads(
-    tables: &[Table<'_>],
+    tables: &[ParquetTable<'_>],
     drawn: &[&PathBuf],
     connectors: &Connectors,
     account: &mut Account,
-) -> Result<Vec<Road>, OvertureError> {
+) -> Result<Vec<RoadSegment>, OvertureError> {
     let mut roads = Vec::new();
     for table in tables.iter().filter(|table| table.kind == Kind::Segments) {
-        let groups = table.each(|some: &mut Vec<(Option<Road>, Account)>, record| {
+        let groups = table.each(|some: &mut Vec<(Option<RoadSegment>, Account)>, record| {
             let id = record.id.clone();
             let road = || {
                 let segment = record::Segment::read(record.columns)?;
                 let places = geometry::line(&record.geometry)?;
-                made(Feature { id: record.id, places, segment }, connectors)
+                made(SegmentFeature { id: record.id, places, segment }, connectors)
             };
             some.push(road().map_err(|problem| (Some(id), problem))?);
             Ok(())
@@ -150,8 +151,8 @@ fn read_roads(
                 let places = geometry::of_json(&feature.geometry, "LineString")?;
                 Ok((places, record::Segment::read(std::mem::take(&mut feature.properties))?))
             })?;
-            let (road, of_road) =
-                made(Feature { id: id.clone(), places, segment }, connectors).map_err(|problem| (Some(id), problem))?;
+            let (road, of_road) = made(SegmentFeature { id: id.clone(), places, segment }, connectors)
+                .map_err(|problem| (Some(id), problem))?;
             roads.extend(road);
             account.add(&of_road);
             Ok(())
@@ -160,16 +161,16 @@ fn read_roads(
     Ok(roads)
 }
 
-fn made(feature: Feature, connectors: &Connectors) -> Result<(Option<Road>, Account), Problem> {
+fn made(feature: SegmentFeature, connectors: &Connectors) -> Result<(Option<RoadSegment>, Account), OvertureProblem> {
     let mut account = Account::default();
-    Ok((Road::of(feature, connectors, &mut account)?, account))
+    Ok((RoadSegment::of(feature, connectors, &mut account)?, account))
 }
 
 /// The id of a feature, and what `read` makes of it.
 fn id_and<T>(
     mut feature: geojson::Feature,
-    read: impl FnOnce(&mut geojson::Feature) -> Result<T, Problem>,
-) -> Result<(String, T), (Option<String>, Problem)> {
+    read: impl FnOnce(&mut geojson::Feature) -> Result<T, OvertureProblem>,
+) -> Result<(String, T), (Option<String>, OvertureProblem)> {
     let id = feature.id().map_err(|problem| (None, problem))?;
     match read(&mut feature) {
         Ok(value) => Ok((id, value)),

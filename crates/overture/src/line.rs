@@ -4,7 +4,7 @@
 use geo::{Distance as _, Geodesic, Point};
 use rustc_hash::FxHashMap;
 
-use super::ids::Key;
+use super::ids::FeatureKey;
 use crate::osm::{LonLat, NodeId};
 
 /// A place this near to a vertex is that vertex, metres. A vertex beside it would bend the line.
@@ -117,7 +117,7 @@ impl Line {
     }
 
     /// Numbers all other vertices: by segment and place, so they stay the same when the segment changes elsewhere.
-    pub(super) fn number_rest(&mut self, key: Key) {
+    pub(super) fn number_rest(&mut self, key: FeatureKey) {
         // Counted, not searched: searching takes minutes for a line of a million vertices, and hours for one of ten millions.
         let mut known: FxHashMap<LonLat, u64> = FxHashMap::default();
         for vertex in 0..self.places.len() {
@@ -170,7 +170,7 @@ mod tests {
         let near = LonLat { lon_e7: 500, lat_e7: 20 };
         assert!(line.join(NodeId::new(9), Some(near), Some(0.125)) && line.places[1] == near);
         assert!(!line.join(NodeId::new(10), Some(at(2000)), None));
-        line.number_rest(Key::segment("s"));
+        line.number_rest(FeatureKey::segment("s"));
         assert!(line.nodes.iter().all(|node| node.get() > 0));
     }
 
@@ -189,7 +189,7 @@ mod tests {
     fn a_vertex_is_numbered_by_its_place_and_by_how_often_the_line_was_there() {
         let mut line = Line::new((0..50_000).map(|i| at(i % 2 * 1000)).collect()).unwrap();
         assert!(line.number(3, NodeId::new(7)));
-        let key = Key::segment("s");
+        let key = FeatureKey::segment("s");
         line.number_rest(key);
         for vertex in [0, 1, 2, 4, 5, 49_999] {
             let place = u64::from(line.places[vertex].lon_e7.cast_unsigned()) << 32;

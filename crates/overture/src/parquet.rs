@@ -15,7 +15,7 @@ use ::parquet::schema::types::Type;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 
-use super::error::{FilePosition, OvertureError, Problem};
+use super::error::{FilePosition, OvertureError, OvertureProblem};
 use super::record;
 use crate::outside;
 
@@ -50,23 +50,23 @@ pub(super) enum Kind {
 }
 
 /// A row: its id, its geometry as well-known binary, its other columns.
-pub(super) struct Record {
+pub(super) struct ParquetRow {
     pub(super) id: String,
     pub(super) geometry: Vec<u8>,
     pub(super) columns: Value,
 }
 
 /// An open file whose columns are as they should be.
-pub(super) struct Table<'p> {
+pub(super) struct ParquetTable<'p> {
     path: &'p Path,
     groups: usize,
     pub(super) kind: Kind,
     projection: Type,
 }
 
-impl<'p> Table<'p> {
+impl<'p> ParquetTable<'p> {
     pub(super) fn open(path: &'p Path) -> Result<Self, OvertureError> {
-        let failed = |problem: Problem| OvertureError::of_file(path, problem);
+        let failed = |problem: OvertureProblem| OvertureError::of_file(path, problem);
         let reader = open(path).map_err(failed)?;
         let metadata = reader.metadata().file_metadata();
         let geo = metadata.key_value_metadata().into_iter().flatten().find(|entry| entry.key == "geo");
@@ -78,7 +78,7 @@ impl<'p> Table<'p> {
     /// Makes something of every row, group by group on all threads. The results are in the order of the file.
     pub(super) fn each<T: Send>(
         &self,
-        make: impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)> + Sync,
+        make: impl Fn(&mut Vec<T>, ParquetRow) -> Result<(), (Option<String>, OvertureProblem)> + Sync,
     ) -> Result<Vec<Vec<T>>, OvertureError> {
         let groups: Vec<_> = (0..self.groups).into_par_iter().map(|group| self.group(group, &make)).collect();
         // The first error in the file, whichever thread was first.
@@ -88,9 +88,9 @@ impl<'p> Table<'p> {
     fn group<T>(
         &self,
         group: usize,
-        make: &impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)>,
+        make: &impl Fn(&mut Vec<T>, ParquetRow) -> Result<(), (Option<String>, OvertureProblem)>,
     ) -> Result<Vec<T>, OvertureError> {
-        let at = |position: FilePosition, (id, problem): (Option<String>, Problem)| OvertureError {
+        let at = |position: FilePosition, (id, problem): (Option<String>, OvertureProblem)| OvertureError {
             path: self.path.to_owned(),
             position,
             id,
@@ -107,7 +107,7 @@ impl<'p> Table<'p> {
         for row_number in 0..number {
             let position = FilePosition::Row(group, row_number);
             let row = guarded(|| iterator.next().transpose()).map_err(|problem| at(position, (None, problem)))?;
-            let ends = || (None, Problem::Damaged("the rows end too early".to_owned()));
+            let ends = || (None, OvertureProblem::Damaged("the rows end too early".to_owned()));
             let record =
                 record(row.ok_or_else(|| at(position, ends()))?).map_err(|problem| at(position, (None, problem)))?;
             make(&mut made, record).map_err(|problem| at(position, problem))?;
@@ -116,46 +116,47 @@ impl<'p> Table<'p> {
     }
 }
 
-fn open(path: &Path) -> Result<SerializedFileReader<File>, Problem> {
+fn open(path: &Path) -> Result<SerializedFileReader<File>, OvertureProblem> {
     let file = File::open(path)?;
     guarded(|| SerializedFileReader::new(file))
 }
 
 /// Calls the library of the format. On some damaged files it panics; such a file is an error like any other.
-fn guarded<T>(call: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, Problem> {
+fn guarded<T>(call: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, OvertureProblem> {
     match outside::caught(call) {
         Some(Ok(value)) => Ok(value),
         Some(Err(error)) => {
             let text = error.to_string();
             let codec = text.contains("Disabled feature at compile time");
-            Err(if codec { Problem::Codec(text) } else { Problem::Damaged(text) })
+            Err(if codec { OvertureProblem::Codec(text) } else { OvertureProblem::Damaged(text) })
         }
-        None => Err(Problem::Damaged("its parts do not fit together".to_owned())),
+        None => Err(OvertureProblem::Damaged("its parts do not fit together".to_owned())),
     }
 }
 
 /// Refuses geometry that is no well-known binary on WGS 84. Without metadata the rows decide.
-fn check_geometry(geo: Option<&str>) -> Result<(), Problem> {
+fn check_geometry(geo: Option<&str>) -> Result<(), OvertureProblem> {
     let Some(geo) = geo else { return Ok(()) };
-    let geo: Value = serde_json::from_str(geo).map_err(|e| Problem::Damaged(format!("its metadata `geo`: {e}")))?;
+    let geo: Value =
+        serde_json::from_str(geo).map_err(|e| OvertureProblem::Damaged(format!("its metadata `geo`: {e}")))?;
     let column = geo.pointer("/columns/geometry").unwrap_or(&Value::Null);
     if let Some(encoding) = column.get("encoding").and_then(Value::as_str)
         && encoding != "WKB"
     {
-        return Err(Problem::Geometry(format!("encoding {encoding} in place of WKB")));
+        return Err(OvertureProblem::Geometry(format!("encoding {encoding} in place of WKB")));
     }
     let id =
         |member: &str| column.pointer(&format!("/crs/id/{member}")).map(|value| value.to_string().replace('"', ""));
     match (id("authority"), id("code")) {
         (Some(authority), Some(code)) if !matches!((&*authority, &*code), ("OGC", "CRS84") | ("EPSG", "4326")) => {
-            Err(Problem::Geometry(format!("reference system {authority}:{code} in place of OGC:CRS84")))
+            Err(OvertureProblem::Geometry(format!("reference system {authority}:{code} in place of OGC:CRS84")))
         }
         _ => Ok(()),
     }
 }
 
 /// What the columns say that the file holds, and those of them that are read.
-fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
+fn columns(schema: &Type) -> Result<(Kind, Type), OvertureProblem> {
     let fields = schema.get_fields();
     let has = |name: &str| fields.iter().any(|field| field.name() == name);
     if let Some(old) = record::OLD.iter().find(|name| has(name)) {
@@ -167,7 +168,7 @@ fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
         Kind::Connectors => (&CONNECTOR, CONNECTOR.len()),
     };
     if let Some(missing) = wanted.iter().take(needed).find(|name| !has(name)) {
-        return Err(Problem::Schema(format!("the column {missing} is missing")));
+        return Err(OvertureProblem::Schema(format!("the column {missing} is missing")));
     }
     let used: Vec<Arc<Type>> = fields.iter().filter(|field| wanted.contains(&field.name())).cloned().collect();
     for field in &used {
@@ -179,10 +180,10 @@ fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
         };
         if !right {
             let detail = format!("it is {}, and not {expected}", type_name(field));
-            return Err(Problem::Type { property: field.name().to_owned(), detail });
+            return Err(OvertureProblem::Type { property: field.name().to_owned(), detail });
         }
     }
-    let damaged = |e: ParquetError| Problem::Damaged(e.to_string());
+    let damaged = |e: ParquetError| OvertureProblem::Damaged(e.to_string());
     Ok((kind, Type::group_type_builder(schema.name()).with_fields(used).build().map_err(damaged)?))
 }
 
@@ -207,7 +208,7 @@ fn is_list(field: &Type) -> bool {
     info.logical_type_ref() == Some(&LogicalType::List) || info.converted_type() == ConvertedType::LIST
 }
 
-fn record(row: Row) -> Result<Record, Problem> {
+fn record(row: Row) -> Result<ParquetRow, OvertureProblem> {
     let (mut id, mut geometry, mut columns) = (None, None, Map::new());
     for (name, field) in row.into_columns() {
         match (name.as_str(), field) {
@@ -219,9 +220,9 @@ fn record(row: Row) -> Result<Record, Problem> {
             }
         }
     }
-    let id = id.ok_or_else(|| Problem::Value("a row without id".to_owned()))?;
-    let geometry = geometry.ok_or_else(|| Problem::Geometry(format!("{id} has none")))?;
-    Ok(Record { id, geometry, columns: Value::Object(columns) })
+    let id = id.ok_or_else(|| OvertureProblem::Value("a row without id".to_owned()))?;
+    let geometry = geometry.ok_or_else(|| OvertureProblem::Geometry(format!("{id} has none")))?;
+    Ok(ParquetRow { id, geometry, columns: Value::Object(columns) })
 }
 
 /// A value as JSON. No member that is read is a date, a time or a map in Overture's schema. Where one stands, it becomes a value that is not

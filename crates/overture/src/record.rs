@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
-use super::error::Problem;
+use super::error::OvertureProblem;
 
 /// A segment without id and geometry.
 #[derive(Debug, Default, Deserialize)]
@@ -31,14 +31,14 @@ impl Segment {
     /// Reads the properties of a feature, or the columns of a row.
     ///
     /// # Errors
-    /// [`Problem::Type`] names the first property of another type. [`Problem::Schema`]: they are of a schema before September 2024.
-    pub(super) fn read(properties: Value) -> Result<Self, Problem> {
+    /// [`OvertureProblem::Type`] names the first property of another type. [`OvertureProblem::Schema`]: they are of a schema before September 2024.
+    pub(super) fn read(properties: Value) -> Result<Self, OvertureProblem> {
         if let Some(old) = OLD.iter().find(|name| properties.get(name).is_some()) {
             return Err(old_schema(old));
         }
         serde_path_to_error::deserialize(properties).map_err(|error| {
             let property = error.path().to_string();
-            Problem::Type { property, detail: mismatch(&error.into_inner().to_string()) }
+            OvertureProblem::Type { property, detail: mismatch(&error.into_inner().to_string()) }
         })
     }
 }
@@ -47,8 +47,8 @@ impl Segment {
 pub(super) const OLD: [&str; 2] = ["road", "connector_ids"];
 
 /// The error of a file that has one of them.
-pub(super) fn old_schema(name: &str) -> Problem {
-    Problem::Schema(format!("the property {name} is of an older schema, which netcert does not know"))
+pub(super) fn old_schema(name: &str) -> OvertureProblem {
+    OvertureProblem::Schema(format!("the property {name} is of an older schema, which netcert does not know"))
 }
 
 /// What serde says of a type, in plain words.

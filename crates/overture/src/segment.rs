@@ -2,11 +2,11 @@
 
 use super::account::{Account, CONNECTOR, RULE, SEGMENT};
 use super::connectors::Connectors;
-use super::error::Problem;
-use super::ids::Key;
+use super::error::OvertureProblem;
+use super::ids::FeatureKey;
 use super::line::Line;
 use super::record::{Segment, Transition};
-use super::rules::Rules;
+use super::rules::SegmentRules;
 use crate::osm::facts::{Notes, RoadClass, WayFacts, given_class};
 use crate::osm::{LonLat, NodeId};
 
@@ -24,9 +24,9 @@ const MINOR_STRETCH: &str = "minor_service";
 
 /// A segment that is a road for heavy vehicles.
 #[derive(Debug)]
-pub(super) struct Road {
+pub(super) struct RoadSegment {
     pub(super) id: Box<str>,
-    pub(super) key: Key,
+    pub(super) key: FeatureKey,
     pub(super) line: Line,
     pub(super) name: Option<String>,
     /// Vertices at which rules change, ascending, without the ends.
@@ -39,22 +39,22 @@ pub(super) struct Road {
 }
 
 /// A segment with its geometry, as a file has it.
-pub(super) struct Feature {
+pub(super) struct SegmentFeature {
     pub(super) id: String,
     pub(super) places: Vec<LonLat>,
     pub(super) segment: Segment,
 }
 
-impl Road {
+impl RoadSegment {
     /// Makes a road of a segment, or counts why it is none.
     pub(super) fn of(
-        feature: Feature,
+        feature: SegmentFeature,
         connectors: &Connectors,
         account: &mut Account,
-    ) -> Result<Option<Self>, Problem> {
-        let Feature { id, places, mut segment } = feature;
+    ) -> Result<Option<Self>, OvertureProblem> {
+        let SegmentFeature { id, places, mut segment } = feature;
         let mut of_rules = Account::default();
-        let rules = Rules::of(&segment, &mut of_rules);
+        let rules = SegmentRules::of(&segment, &mut of_rules);
         let (class, mut line) =
             match class(&segment, &rules).and_then(|class| Ok((class, Line::new(places).ok_or(TOO_FEW_PLACES)?))) {
                 Ok(both) => both,
@@ -65,14 +65,19 @@ impl Road {
             };
         account.kept(SEGMENT, 1);
         account.add(&of_rules);
-        let key = Key::segment(&id);
-        let ends =
-            segment.connectors.take().ok_or_else(|| Problem::Value("the segment has no connectors".to_owned()))?;
+        let key = FeatureKey::segment(&id);
+        let ends = segment
+            .connectors
+            .take()
+            .ok_or_else(|| OvertureProblem::Value("the segment has no connectors".to_owned()))?;
         for connector in ends {
             if connector.at.is_some_and(|at| !(0.0..=1.0).contains(&at)) {
-                return Err(Problem::Value(format!("connector {} is not within 0 to 1", connector.connector_id)));
+                return Err(OvertureProblem::Value(format!(
+                    "connector {} is not within 0 to 1",
+                    connector.connector_id
+                )));
             }
-            let of_connector = Key::connector(&connector.connector_id);
+            let of_connector = FeatureKey::connector(&connector.connector_id);
             let place = connectors.place(of_connector);
             if place.is_none() {
                 account.noted(CONNECTOR, "missing", 1);
@@ -142,7 +147,7 @@ impl Road {
 }
 
 /// The class of a segment that is a road for heavy vehicles, by the rules for extracts.
-fn class(segment: &Segment, rules: &Rules) -> Result<RoadClass, &'static str> {
+fn class(segment: &Segment, rules: &SegmentRules) -> Result<RoadClass, &'static str> {
     if segment.subtype.as_deref().is_some_and(|subtype| subtype != "road") {
         return Err(NOT_A_ROAD);
     }

@@ -3,10 +3,10 @@
 use rustc_hash::FxHashMap;
 
 use super::account::{Account, RULE};
-use super::ids::Key;
+use super::ids::FeatureKey;
 use super::record::Transition;
 use super::rules::{concerns_lorries, headings, range};
-use super::segment::Road;
+use super::segment::RoadSegment;
 use crate::osm::facts::{RestrictedTurn, RestrictionKind, TurnRule};
 use crate::osm::{LonLat, NodeId, Restriction, Via};
 
@@ -33,8 +33,8 @@ pub(super) struct Turn {
 }
 
 /// Finds the roads of all transitions and cuts them there. Counts those that are not kept.
-pub(super) fn resolve(roads: &mut [Road], account: &mut Account) -> Vec<Turn> {
-    let index: FxHashMap<Key, usize> = roads.iter().enumerate().map(|(i, road)| (road.key, i)).collect();
+pub(super) fn resolve(roads: &mut [RoadSegment], account: &mut Account) -> Vec<Turn> {
+    let index: FxHashMap<FeatureKey, usize> = roads.iter().enumerate().map(|(i, road)| (road.key, i)).collect();
     let mut turns = Vec::new();
     for from in 0..roads.len() {
         for (number, transition) in std::mem::take(&mut roads[from].transitions).iter().enumerate() {
@@ -64,8 +64,8 @@ pub(super) fn resolve(roads: &mut [Road], account: &mut Account) -> Vec<Turn> {
 }
 
 fn turn(
-    roads: &[Road],
-    index: &FxHashMap<Key, usize>,
+    roads: &[RoadSegment],
+    index: &FxHashMap<FeatureKey, usize>,
     from: usize,
     number: u64,
     transition: &Transition,
@@ -85,7 +85,7 @@ fn turn(
         let (Some(connector), Some(segment)) = (&step.connector_id, &step.segment_id) else {
             return Err("not_understood");
         };
-        steps.push((NodeId::new(Key::connector(connector).number()), Key::segment(segment)));
+        steps.push((NodeId::new(FeatureKey::connector(connector).number()), FeatureKey::segment(segment)));
     }
     let (Some(&(first, _)), Some(&(via, last))) = (steps.first(), steps.last()) else { return Err("not_understood") };
     let leaves = match transition.final_heading.as_deref() {
@@ -101,7 +101,7 @@ fn turn(
         // No vehicle turns back on the road here.
         return Err("turning_back");
     }
-    let road = |key: Key| index.get(&key).copied().ok_or("transition_off_road");
+    let road = |key: FeatureKey| index.get(&key).copied().ok_or("transition_off_road");
     let to = road(last)?;
     let mut between = Vec::new();
     for pair in steps.windows(2) {
@@ -128,13 +128,13 @@ fn turn(
 }
 
 /// The vertices that have a node.
-fn vertices(road: &Road, node: NodeId) -> Vec<usize> {
+fn vertices(road: &RoadSegment, node: NodeId) -> Vec<usize> {
     (0..road.line.nodes.len()).filter(|&vertex| road.line.nodes[vertex] == node).collect()
 }
 
 /// The vertices at a node at which a road arrives in these headings. A road leaves a vertex in the headings in which it arrives there from the
 /// other side.
-fn passing(road: &Road, node: NodeId, headings: [bool; 2]) -> Vec<VertexSide> {
+fn passing(road: &RoadSegment, node: NodeId, headings: [bool; 2]) -> Vec<VertexSide> {
     let last = road.line.nodes.len() - 1;
     let arrives = |vertex: usize| [headings[0] && vertex > 0, headings[1] && vertex < last];
     let of_vertex = |vertex| {
@@ -148,23 +148,23 @@ fn passing(road: &Road, node: NodeId, headings: [bool; 2]) -> Vec<VertexSide> {
 }
 
 /// The way on the side of a cut from which vehicles with this heading come.
-fn way(road: &Road, VertexSide { vertex, heading }: VertexSide) -> i64 {
+fn way(road: &RoadSegment, VertexSide { vertex, heading }: VertexSide) -> i64 {
     let begins =
         if heading == 0 { road.cuts.iter().rev().find(|cut| **cut < vertex).copied().unwrap_or(0) } else { vertex };
     road.way(begins)
 }
 
 /// The restrictions, once all roads are cut. Sorted by id.
-pub(super) fn restrictions(roads: &[Road], turns: &[Turn]) -> Vec<Restriction> {
+pub(super) fn restrictions(roads: &[RoadSegment], turns: &[Turn]) -> Vec<Restriction> {
     let mut all: Vec<Restriction> = turns.iter().map(|turn| restriction(roads, turn)).collect();
     all.sort_by_key(|restriction| restriction.id);
     all.dedup_by_key(|restriction| restriction.id);
     all
 }
 
-fn restriction(roads: &[Road], turn: &Turn) -> Restriction {
+fn restriction(roads: &[RoadSegment], turn: &Turn) -> Restriction {
     let (from, to) = (&roads[turn.from], &roads[turn.to]);
-    let ways = |road: &Road, sides: &[VertexSide]| {
+    let ways = |road: &RoadSegment, sides: &[VertexSide]| {
         let mut ways: Vec<i64> = sides.iter().map(|&side| way(road, side)).collect();
         ways.sort_unstable();
         ways.dedup();
@@ -189,7 +189,7 @@ fn restriction(roads: &[Road], turn: &Turn) -> Restriction {
 }
 
 /// The ways of a road between two of its nodes, in the order of travel.
-fn between(road: &Road, enter: NodeId, leave: NodeId) -> Vec<i64> {
+fn between(road: &RoadSegment, enter: NodeId, leave: NodeId) -> Vec<i64> {
     let (starts, ends) = (vertices(road, enter), vertices(road, leave));
     let pairs = starts.iter().flat_map(|&start| ends.iter().map(move |&end| (start, end)));
     let Some((start, end)) = pairs.min_by_key(|(start, end)| start.abs_diff(*end)) else { return Vec::new() };
@@ -203,8 +203,8 @@ fn between(road: &Road, enter: NodeId, leave: NodeId) -> Vec<i64> {
 }
 
 /// What a sign would say. The ways decide; the name is for people.
-fn kind(from: &Road, to: &Road, turn: &Turn) -> RestrictionKind {
-    let step = |road: &Road, VertexSide { vertex, heading }: VertexSide| {
+fn kind(from: &RoadSegment, to: &RoadSegment, turn: &Turn) -> RestrictionKind {
+    let step = |road: &RoadSegment, VertexSide { vertex, heading }: VertexSide| {
         let before = if heading == 0 { vertex.saturating_sub(1) } else { vertex + 1 };
         let place = |vertex: usize| road.line.places.get(vertex).copied().unwrap_or(road.line.places[0]);
         direction(place(before), place(vertex))

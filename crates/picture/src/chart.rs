@@ -4,7 +4,7 @@ use super::furniture::round_below;
 use super::palette::{self, Colour};
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::{Frame, Point};
+use super::{PageFrame, Point};
 
 /// One axis: its range and its label.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,7 @@ impl Scale {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// Place on the page.
-    pub frame: Frame,
+    pub frame: PageFrame,
     /// Horizontal axis, to the right.
     pub x: Scale,
     /// Vertical axis, upwards.

@@ -6,7 +6,7 @@ use netcert_certify::{CORNER_WIDTHS_M, Corners};
 use super::palette::{self, luminance};
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::view::Frame;
+use super::view::PageFrame;
 
 const CELL: f64 = 27.0;
 /// Beside and above each panel's cells, for widths and titles.
@@ -47,7 +47,7 @@ pub fn corners(vehicle: &Vehicle, corners: &Corners) -> String {
         let x = 24.0 + (angle % COLUMNS) as f64 * across;
         let y = TOP + (angle / COLUMNS) as f64 * down;
         picture.text([x, y + 18.0], &format!("{turn_deg}°"), TextStyle::size(16.0).bold());
-        let frame = Frame { x: x + BESIDE - 16.0, y: y + ABOVE - 20.0, width: side, height: side };
+        let frame = PageFrame { x: x + BESIDE - 16.0, y: y + ABOVE - 20.0, width: side, height: side };
         picture.group("corners", |picture| panel(picture, corners, angle, frame));
     }
     for (line, note) in NOTES.iter().enumerate() {
@@ -57,7 +57,7 @@ pub fn corners(vehicle: &Vehicle, corners: &Corners) -> String {
     picture.finish()
 }
 
-fn panel(picture: &mut Picture, corners: &Corners, angle: usize, frame: Frame) {
+fn panel(picture: &mut Picture, corners: &Corners, angle: usize, frame: PageFrame) {
     let grey = TextStyle::size(11.0).coloured(palette::GREY);
     for (i, width_m) in CORNER_WIDTHS_M.iter().enumerate() {
         let middle = (i as f64 + 0.5) * CELL;
@@ -69,7 +69,7 @@ fn panel(picture: &mut Picture, corners: &Corners, angle: usize, frame: Frame) {
             let least_m = corners.least_m(angle, from, to);
             let colour = least_m.map_or(palette::PALE, |m| palette::sequential(1.0 - m / MOST_M));
             let (x, y) = (frame.x + to as f64 * CELL, frame.y + from as f64 * CELL);
-            let cell = Frame { x, y, width: CELL, height: CELL };
+            let cell = PageFrame { x, y, width: CELL, height: CELL };
             picture.rect(cell, 0.0, Style::area(colour).outlined(palette::PAPER, 1.0));
             let ink = if luminance(colour) < DARK { palette::PAPER } else { palette::INK };
             let text = least_m.map_or("–".to_owned(), |m| m.to_string());

@@ -4,7 +4,7 @@ use super::lengths::Units;
 use super::palette::{self, Colour};
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::{Frame, Point, View};
+use super::{PageFrame, Point, View};
 
 /// Length of an arrow's head.
 const HEAD: f64 = 8.0;
@@ -56,7 +56,8 @@ pub fn dimension(picture: &mut Picture, from: Point, to: Point, text: &str, styl
 pub fn callout(picture: &mut Picture, target: Point, corner: Point, lines: &[String], colour: Colour) {
     let style = TextStyle::size(14.0);
     let widest = lines.iter().map(|line| style.bold().width(line)).fold(0.0, f64::max);
-    let frame = Frame { x: corner[0], y: corner[1], width: widest + 20.0, height: 19.0 * lines.len() as f64 + 13.0 };
+    let frame =
+        PageFrame { x: corner[0], y: corner[1], width: widest + 20.0, height: 19.0 * lines.len() as f64 + 13.0 };
     let nearest = [target[0].clamp(frame.x, frame.x + frame.width), target[1].clamp(frame.y, frame.y + frame.height)];
     picture.group("callout", |p| {
         p.segment(nearest, target, Style::line(colour, 1.4));
@@ -81,11 +82,11 @@ pub(super) fn scale_bar_in(picture: &mut Picture, view: &View, at: Point, most: 
     let [x, y] = at;
     picture.group("scale", |p| {
         p.rect(
-            Frame { x, y: y - 5.0, width: length, height: 5.0 },
+            PageFrame { x, y: y - 5.0, width: length, height: 5.0 },
             0.0,
             Style::area(palette::PAPER).outlined(palette::INK, 1.0),
         );
-        p.rect(Frame { x, y: y - 5.0, width: 0.5 * length, height: 5.0 }, 0.0, Style::area(palette::INK));
+        p.rect(PageFrame { x, y: y - 5.0, width: 0.5 * length, height: 5.0 }, 0.0, Style::area(palette::INK));
         let style = TextStyle::size(12.0).haloed();
         p.text([x, y - 10.0], "0", style);
         p.text([x + length, y - 10.0], &format!("{many} {name}"), style.anchored(Anchor::Middle));
@@ -103,14 +104,14 @@ pub(super) fn round_below(value: f64) -> f64 {
 
 /// One entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Key {
+pub struct LegendEntry {
     /// Style of the sample: an area if it has a fill, otherwise a line.
     pub style: Style,
     /// Meaning of the sample.
     pub text: String,
 }
 
-impl Key {
+impl LegendEntry {
     /// A sample and its meaning.
     #[must_use]
     pub fn new(style: Style, text: impl Into<String>) -> Self {
@@ -119,13 +120,13 @@ impl Key {
 }
 
 /// Draws samples and their meanings downwards from the top left corner `at`. Returns the height.
-pub fn legend(picture: &mut Picture, at: Point, keys: &[Key]) -> f64 {
+pub fn legend(picture: &mut Picture, at: Point, keys: &[LegendEntry]) -> f64 {
     let row = 20.0;
     picture.group("legend", |p| {
         for (i, key) in keys.iter().enumerate() {
             let y = at[1] + row * (i as f64 + 0.5);
             if key.style.fill.is_some() {
-                p.rect(Frame { x: at[0], y: y - 6.0, width: 26.0, height: 12.0 }, 1.0, key.style);
+                p.rect(PageFrame { x: at[0], y: y - 6.0, width: 26.0, height: 12.0 }, 1.0, key.style);
             } else {
                 p.segment([at[0], y], [at[0] + 26.0, y], key.style);
             }

@@ -51,7 +51,7 @@ mod view;
 pub use chart::{Chart, Scale};
 pub use corners::corners;
 pub use explanation::explanation;
-pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
+pub use furniture::{LegendEntry, arrow, callout, dimension, legend, scale_bar};
 pub use lengths::Units;
 pub use manoeuvres::manoeuvres;
 pub use route::route;
@@ -60,7 +60,7 @@ pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
 pub use turn::turn;
 pub use vehicle::vehicle;
-pub use view::{Bounds, Frame, View};
+pub use view::{BoundingBox, PageFrame, View};
 
 /// A place: metres in the world, or page units (right and *down*), depending on the context.
 pub type Point = [f64; 2];

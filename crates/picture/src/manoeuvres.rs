@@ -6,9 +6,11 @@ use super::furniture::{arrow, dimension};
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::{Bounds, Frame, Point, View, bodies, scale_bar};
+use super::{BoundingBox, PageFrame, Point, View, bodies, scale_bar};
 use netcert_base::vehicle::Vehicle;
-use netcert_explain::manoeuvres::{self, Drive, Finding, Measure, RADIUS_M, Report, Turn, TurnMeasurements};
+use netcert_explain::manoeuvres::{
+    self, DrivenTurn, LimitFinding, ManoeuvreReport, PerformanceMeasure, PrescribedTurn, RADIUS_M, TurnMeasurements,
+};
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 28.0;
@@ -27,7 +29,7 @@ pub fn manoeuvres(vehicle: &Vehicle) -> String {
     );
     let panel = (WIDTH - 4.0 * MARGIN) / 3.0;
     let frames =
-        [0.0, 1.0, 2.0].map(|i| Frame { x: MARGIN + i * (panel + MARGIN), y: 122.0, width: panel, height: 470.0 });
+        [0.0, 1.0, 2.0].map(|i| PageFrame { x: MARGIN + i * (panel + MARGIN), y: 122.0, width: panel, height: 470.0 });
     let mut picture = Picture::new(WIDTH, 880.0, &title, &description);
     picture.text([MARGIN, 44.0], &vehicle.name, TextStyle::size(24.0).bold());
     let subtitle =
@@ -37,11 +39,11 @@ pub fn manoeuvres(vehicle: &Vehicle) -> String {
     turn(&mut picture, vehicle, &manoeuvres::right_angle(vehicle), &report.right_angle, first);
     turn(&mut picture, vehicle, &manoeuvres::u_turn(vehicle), &report.u_turn, second);
     circle(&mut picture, vehicle, &report, third);
-    let below = |frame: Frame| [frame.x, frame.y + frame.height + 22.0];
-    let of = |measures: &[Measure]| -> Vec<Finding> {
+    let below = |frame: PageFrame| [frame.x, frame.y + frame.height + 22.0];
+    let of = |measures: &[PerformanceMeasure]| -> Vec<LimitFinding> {
         report.findings.iter().copied().filter(|f| measures.contains(&f.limit.measure)).collect()
     };
-    let pbs = of(&[Measure::SweptPath, Measure::TailSwing, Measure::FrontalSwing]);
+    let pbs = of(&[PerformanceMeasure::SweptPath, PerformanceMeasure::TailSwing, PerformanceMeasure::FrontalSwing]);
     numbers(&mut picture, below(first), vehicle, &report.right_angle, &pbs);
     numbers(&mut picture, below(second), vehicle, &report.u_turn, &[]);
     ring_numbers(
@@ -49,7 +51,7 @@ pub fn manoeuvres(vehicle: &Vehicle) -> String {
         below(third),
         vehicle,
         &report,
-        &of(&[Measure::InnerRadius, Measure::RingWidth, Measure::SwingOut]),
+        &of(&[PerformanceMeasure::InnerRadius, PerformanceMeasure::RingWidth, PerformanceMeasure::SwingOut]),
     );
     let notes = "Limits of PBS: the standard is named, its text was not read. EU: directive 96/53/EC with 97/27/EC; DE: \
                  StVZO § 32d; both read. Rounded corners of real bodies swing less.";
@@ -57,20 +59,20 @@ pub fn manoeuvres(vehicle: &Vehicle) -> String {
     picture.finish()
 }
 
-fn heading(picture: &mut Picture, frame: Frame, title: &str, guide: &str) {
+fn heading(picture: &mut Picture, frame: PageFrame, title: &str, guide: &str) {
     picture.text([frame.x, frame.y - 24.0], title, TextStyle::size(17.0).bold());
     let style = TextStyle::size(12.5).coloured(palette::GREY);
     picture.text([frame.x, frame.y - 8.0], &format!("{guide} follows the blue path"), style);
 }
 
-fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &TurnMeasurements, frame: Frame) {
+fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &PrescribedTurn, swept: &TurnMeasurements, frame: PageFrame) {
     let degrees = turn.angle_rad.to_degrees();
     heading(picture, frame, &format!("{degrees:.0}° at {RADIUS_M} m"), turn.guide.words());
     let drive = turn.drive(vehicle);
     let ends = seen(&drive, turn);
     let mut points: Vec<Point> = ends.clone().flat_map(|at| bodies::corners(vehicle, pose_at(&drive, at))).collect();
     points.push([0.0, turn.radius_m]);
-    let view = View::fit(&Bounds::of(&points).grown(1.0), frame);
+    let view = View::fit(&BoundingBox::of(&points).grown(1.0), frame);
     picture.clipped(frame, "turn", |p| {
         smear(p, &view, vehicle, &drive, -2.0..=1e9);
         path(p, &view, &drive);
@@ -91,13 +93,13 @@ fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &TurnMeasu
 }
 
 /// Guide places that the picture shows: from the entry until the front is well out of the turn.
-fn seen(drive: &Drive, turn: &Turn) -> impl Iterator<Item = f64> + Clone + use<> {
+fn seen(drive: &DrivenTurn, turn: &PrescribedTurn) -> impl Iterator<Item = f64> + Clone + use<> {
     let last = drive.at_m.last().copied().unwrap_or(0.0).min(turn.radius_m * turn.angle_rad + 14.0);
     (0..=12).map(move |i| -2.0 + (last + 2.0) * f64::from(i) / 12.0)
 }
 
 /// Place of the guide when the inner side of the unit that cuts in most passes the widest place, approximately.
-fn moment(drive: &Drive, swept: &TurnMeasurements) -> f64 {
+fn moment(drive: &DrivenTurn, swept: &TurnMeasurements) -> f64 {
     let place = beside(&drive.turn, swept.width_at_m, swept.extent_m[0]);
     let near = |poses: &[crate::stet::motion::Pose]| {
         poses.last().map_or(f64::INFINITY, |pose| (pose.axle[0] - place[0]).hypot(pose.axle[1] - place[1]))
@@ -107,19 +109,19 @@ fn moment(drive: &Drive, swept: &TurnMeasurements) -> f64 {
 }
 
 /// The place `at_m` along the path and `left_m` to its left.
-fn beside(turn: &Turn, at_m: f64, left_m: f64) -> Point {
+fn beside(turn: &PrescribedTurn, at_m: f64, left_m: f64) -> Point {
     let (here, on) = (turn.place(at_m), turn.place(at_m + 1e-3));
     let u = [(on[0] - here[0]) / 1e-3, (on[1] - here[1]) / 1e-3];
     [here[0] - left_m * u[1], here[1] + left_m * u[0]]
 }
 
-fn pose_at(drive: &Drive, at_m: f64) -> &[crate::stet::motion::Pose] {
+fn pose_at(drive: &DrivenTurn, at_m: f64) -> &[crate::stet::motion::Pose] {
     let k = drive.at_m.partition_point(|&at| at < at_m).min(drive.poses.len().saturating_sub(1));
     drive.poses.get(k).map_or(&[], Vec::as_slice)
 }
 
 /// Draws the area that the bodies sweep while the guide is at these places, metres along the path.
-fn smear(picture: &mut Picture, view: &View, vehicle: &Vehicle, drive: &Drive, guide_m: RangeInclusive<f64>) {
+fn smear(picture: &mut Picture, view: &View, vehicle: &Vehicle, drive: &DrivenTurn, guide_m: RangeInclusive<f64>) {
     picture.group("swept", |p| {
         let mut next = *guide_m.start();
         for (poses, &at) in drive.poses.iter().zip(&drive.at_m) {
@@ -141,7 +143,7 @@ fn outline(picture: &mut Picture, view: &View, vehicle: &Vehicle, poses: &[crate
     });
 }
 
-fn path(picture: &mut Picture, view: &View, drive: &Drive) {
+fn path(picture: &mut Picture, view: &View, drive: &DrivenTurn) {
     let step = (drive.path.len() / 600).max(1);
     let points: Vec<Point> = drive.path.iter().step_by(step).copied().collect();
     picture.group("path", |p| {
@@ -151,19 +153,19 @@ fn path(picture: &mut Picture, view: &View, drive: &Drive) {
     });
 }
 
-fn centre(picture: &mut Picture, view: &View, turn: &Turn) {
+fn centre(picture: &mut Picture, view: &View, turn: &PrescribedTurn) {
     let [x, y] = view.at([0.0, turn.radius_m]);
     for (dx, dy) in [(5.0, 0.0), (0.0, 5.0)] {
         picture.segment([x - dx, y - dy], [x + dx, y + dy], Style::line(palette::GREY, 1.2));
     }
 }
 
-fn circle(picture: &mut Picture, vehicle: &Vehicle, report: &Report, frame: Frame) {
+fn circle(picture: &mut Picture, vehicle: &Vehicle, report: &ManoeuvreReport, frame: PageFrame) {
     let turn = manoeuvres::circle(vehicle);
     heading(picture, frame, "360°, 12.5 m and 5.3 m", turn.guide.words());
     let drive = turn.drive(vehicle);
     let (reach, middle) = (turn.radius_m + 1.2, [0.0, turn.radius_m]);
-    let bounds = Bounds { low: [-reach, middle[1] - reach], high: [reach, middle[1] + reach] };
+    let bounds = BoundingBox { low: [-reach, middle[1] - reach], high: [reach, middle[1] + reach] };
     let view = View::fit(&bounds, frame);
     let arc = turn.radius_m * turn.angle_rad;
     picture.clipped(frame, "circle", |p| {
@@ -203,7 +205,7 @@ fn undrivable(vehicle: &Vehicle, angles_rad: &[f64]) -> Option<String> {
     })
 }
 
-fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &TurnMeasurements, findings: &[Finding]) {
+fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &TurnMeasurements, findings: &[LimitFinding]) {
     let hinge = swept.angles_rad.iter().skip(1).fold(0.0_f64, |most, &a| most.max(a)).to_degrees();
     let steering = swept.angles_rad.first().map_or(0.0, |a| a.to_degrees());
     let mut lines = vec![
@@ -218,7 +220,13 @@ fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &TurnMeas
     listed(picture, at, &lines, findings);
 }
 
-fn ring_numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, report: &Report, findings: &[Finding]) {
+fn ring_numbers(
+    picture: &mut Picture,
+    at: Point,
+    vehicle: &Vehicle,
+    report: &ManoeuvreReport,
+    findings: &[LimitFinding],
+) {
     let ring = &report.circle;
     let hinge = ring.angles_rad.iter().skip(1).fold(0.0_f64, |most, &a| most.max(a)).to_degrees();
     let mut lines = vec![
@@ -232,7 +240,7 @@ fn ring_numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, report: &Re
     listed(picture, at, &lines, findings);
 }
 
-fn listed(picture: &mut Picture, at: Point, lines: &[String], findings: &[Finding]) {
+fn listed(picture: &mut Picture, at: Point, lines: &[String], findings: &[LimitFinding]) {
     let style = TextStyle::size(13.5);
     for (i, line) in lines.iter().enumerate() {
         picture.text([at[0], at[1] + 19.0 * i as f64], line, style);

@@ -5,7 +5,7 @@ use super::furniture::{arrow, scale_bar};
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::{Bounds, Chart, Frame, Point, Scale, View};
+use super::{BoundingBox, Chart, PageFrame, Point, Scale, View};
 use crate::network::Network;
 use crate::stet::known_m;
 use netcert_base::vehicle::Vehicle;
@@ -41,12 +41,12 @@ pub fn route(network: &Network, vehicle: &Vehicle, route: &Route, conditions: us
     let mut picture = Picture::new(1200.0, 860.0, &head, &said);
     picture.text([40.0, 44.0], &head, TextStyle::size(22.0).bold());
     picture.text([40.0, 70.0], &said, TextStyle::size(14.0));
-    strip(&mut picture, network, route, Frame { x: 80.0, y: 190.0, width: 1080.0, height: 220.0 });
-    map(&mut picture, route, Frame { x: 40.0, y: 480.0, width: 1120.0, height: 350.0 });
+    strip(&mut picture, network, route, PageFrame { x: 80.0, y: 190.0, width: 1080.0, height: 220.0 });
+    map(&mut picture, route, PageFrame { x: 40.0, y: 480.0, width: 1120.0, height: 350.0 });
     picture.finish()
 }
 
-fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) {
+fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: PageFrame) {
     let certificate = &route.certificate;
     let spacing_m = route.path.corridor.spacing_m;
     let (left, right) = (series(&certificate.left_m, spacing_m), series(&certificate.right_m, spacing_m));
@@ -62,7 +62,7 @@ fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) 
     for part in route.parts().iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })) {
         let [from, _] = chart.at(part.from_m / 1000.0, 0.0);
         let [to, _] = chart.at(part.to_m / 1000.0, 0.0);
-        let band = Frame { x: from, y: frame.y, width: (to - from).max(2.0), height: frame.height };
+        let band = PageFrame { x: from, y: frame.y, width: (to - from).max(2.0), height: frame.height };
         picture.rect(band, 0.0, Style::area(palette::PALE));
     }
     chart.axes(picture);
@@ -114,10 +114,10 @@ fn series(leeway: &[f64], spacing_m: f64) -> Vec<Point> {
         .collect()
 }
 
-fn map(picture: &mut Picture, route: &Route, frame: Frame) {
+fn map(picture: &mut Picture, route: &Route, frame: PageFrame) {
     let c = &route.path.corridor;
     let points: Vec<Point> = c.x.iter().zip(&c.y).map(|(&x, &y)| [x, y]).collect();
-    let view = View::fit(&Bounds::of(&points).grown(0.02 * route.length_m + 5.0), frame.inset(26.0));
+    let view = View::fit(&BoundingBox::of(&points).grown(0.02 * route.length_m + 5.0), frame.inset(26.0));
     let step = points.len().div_ceil(400).max(1);
     let least = |column: &[f64], k: usize| {
         column[k..(k + step).min(column.len())].iter().copied().fold(f64::INFINITY, f64::min)

@@ -9,7 +9,7 @@ use super::lengths::Units;
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::{Picture, escaped};
-use super::{Bounds, Frame, Point, View};
+use super::{BoundingBox, PageFrame, Point, View};
 use crate::evidence::Quantity;
 use crate::network::{Network, offset_m};
 use crate::osm::LonLat;
@@ -163,8 +163,8 @@ fn map(network: &Network, conditional: &Conditional, units: Units) -> String {
             path.frame.forward_degrees(vec![(lon, lat)]).ok()?.first().copied()
         })
         .collect();
-    let frame = Frame { x: 30.0, y: 20.0, width: 940.0, height: 440.0 };
-    let bounds = Bounds::of(line.iter().chain(pins.iter().flatten()));
+    let frame = PageFrame { x: 30.0, y: 20.0, width: 940.0, height: 440.0 };
+    let bounds = BoundingBox::of(line.iter().chain(pins.iter().flatten()));
     let view = View::fit(&bounds, frame);
     let mut picture = Picture::new(1000.0, 500.0, "The route and its conditions", "Numbers are those of the table");
     // Dashed, as nothing certified is.
@@ -191,12 +191,12 @@ fn survey_map(network: &Network, lines: &[SurveyLine<'_>]) -> String {
         .collect();
     let Some(&(_, centre)) = places.first() else { return String::new() };
     let pins: Vec<(usize, Point)> = places.iter().map(|&(rank, at)| (rank, offset_m(centre, at))).collect();
-    let mut bounds = Bounds::of(pins.iter().map(|(_, at)| at));
+    let mut bounds = BoundingBox::of(pins.iter().map(|(_, at)| at));
     for [x, y] in [bounds.low, bounds.high] {
         bounds.add([x - AROUND_M, y - AROUND_M]);
         bounds.add([x + AROUND_M, y + AROUND_M]);
     }
-    let view = View::fit(&bounds, Frame { x: 30.0, y: 20.0, width: 940.0, height: 440.0 });
+    let view = View::fit(&bounds, PageFrame { x: 30.0, y: 20.0, width: 940.0, height: 440.0 });
     let mut picture = Picture::new(1000.0, 500.0, "The places of the survey", "Numbers are those of the steps");
     let within =
         |[x, y]: Point| (bounds.low[0]..=bounds.high[0]).contains(&x) && (bounds.low[1]..=bounds.high[1]).contains(&y);

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
-use super::{Frame, Point};
+use super::{PageFrame, Point};
 
 /// Sans-serif faces that look alike; a program uses the first one that it knows.
 const FONTS: &str = "Inter, 'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
@@ -32,8 +32,8 @@ impl Picture {
 
     /// The whole page.
     #[must_use]
-    pub fn page(&self) -> Frame {
-        Frame { x: 0.0, y: 0.0, width: self.width, height: self.height }
+    pub fn page(&self) -> PageFrame {
+        PageFrame { x: 0.0, y: 0.0, width: self.width, height: self.height }
     }
 
     /// Draws a group with a class. Tests and style sheets use the class.
@@ -44,7 +44,7 @@ impl Picture {
     }
 
     /// Draws a group clipped to the frame.
-    pub fn clipped(&mut self, frame: Frame, class: &str, draw: impl FnOnce(&mut Self)) {
+    pub fn clipped(&mut self, frame: PageFrame, class: &str, draw: impl FnOnce(&mut Self)) {
         self.clips += 1;
         let id = format!("clip{}", self.clips);
         let [x, y, w, h] = [frame.x, frame.y, frame.width, frame.height].map(number);
@@ -84,7 +84,7 @@ impl Picture {
     }
 
     /// Draws a rectangle with corners rounded by `radius`.
-    pub fn rect(&mut self, frame: Frame, radius: f64, style: Style) {
+    pub fn rect(&mut self, frame: PageFrame, radius: f64, style: Style) {
         let [x, y, w, h, r] = [frame.x, frame.y, frame.width, frame.height, radius].map(number);
         self.line(format_args!(r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" rx="{r}"{}/>"#, look(&style)));
     }

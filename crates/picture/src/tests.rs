@@ -26,15 +26,15 @@ fn text_cannot_break_the_document() {
 
 #[test]
 fn a_metre_is_as_long_up_as_across_and_north_is_up() {
-    let bounds = Bounds::of(&[[0.0, 0.0], [100.0, 10.0]]);
-    let view = View::fit(&bounds, Frame { x: 10.0, y: 10.0, width: 200.0, height: 200.0 });
+    let bounds = BoundingBox::of(&[[0.0, 0.0], [100.0, 10.0]]);
+    let view = View::fit(&bounds, PageFrame { x: 10.0, y: 10.0, width: 200.0, height: 200.0 });
     assert_eq!(view.scale, 2.0);
     assert_eq!(view.at([50.0, 5.0]), [110.0, 110.0]);
     assert_eq!(view.at([51.0, 6.0]), [112.0, 108.0]);
     let turned = View::turned(
         &[[0.0, 0.0], [0.0, 100.0]],
         -std::f64::consts::FRAC_PI_2,
-        Frame { x: 0.0, y: 0.0, width: 200.0, height: 20.0 },
+        PageFrame { x: 0.0, y: 0.0, width: 200.0, height: 20.0 },
     );
     let (a, b) = (turned.at([0.0, 0.0]), turned.at([0.0, 100.0]));
     assert!((b[0] - a[0] - 200.0).abs() < 1e-9 && (b[1] - a[1]).abs() < 1e-9, "north to the right: {a:?} {b:?}");
@@ -64,7 +64,7 @@ fn scales_end_in_their_last_colours_and_text_reads_on_paper() {
 
 #[test]
 fn a_chart_has_round_ticks_and_values_where_they_belong() {
-    let frame = Frame { x: 60.0, y: 0.0, width: 100.0, height: 50.0 };
+    let frame = PageFrame { x: 60.0, y: 0.0, width: 100.0, height: 50.0 };
     let chart = Chart { frame, x: Scale::new(0.0, 10.0, "s, m"), y: Scale::new(-1.0, 1.0, "leeway, m") };
     assert_eq!(chart.at(5.0, 0.0), [110.0, 25.0]);
     let mut picture = Picture::new(200.0, 100.0, "", "");
@@ -77,7 +77,10 @@ fn a_chart_has_round_ticks_and_values_where_they_belong() {
 
 #[test]
 fn a_scale_bar_is_as_long_as_it_says() {
-    let view = View::fit(&Bounds::of(&[[0.0, 0.0], [70.0, 1.0]]), Frame { x: 0.0, y: 0.0, width: 700.0, height: 99.0 });
+    let view = View::fit(
+        &BoundingBox::of(&[[0.0, 0.0], [70.0, 1.0]]),
+        PageFrame { x: 0.0, y: 0.0, width: 700.0, height: 99.0 },
+    );
     let mut picture = Picture::new(700.0, 99.0, "", "");
     scale_bar(&mut picture, &view, [10.0, 90.0], 260.0);
     let svg = picture.finish();

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::palette;
 use super::style::{Style, TextStyle};
 use super::svg::Picture;
-use super::{Bounds, Frame, Key, Point, View, bodies, legend, scale_bar};
+use super::{BoundingBox, LegendEntry, PageFrame, Point, View, bodies, legend, scale_bar};
 use crate::explain::{Cross, Explanation, Geometry, TurnExplanation, words};
 use crate::turns::TurnPath;
 
@@ -38,7 +38,7 @@ pub fn turn(t: &TurnExplanation) -> Option<String> {
     let vehicle = format!("{} {}, turn {}", e.vehicle.id, e.vehicle.name, t.facts.id);
     picture.text([MARGIN, 64.0], &t.title(), TextStyle::size(14.0).coloured(palette::GREY));
     picture.text([MARGIN, 84.0], &vehicle, TextStyle::size(14.0).coloured(palette::GREY));
-    let frame = Frame { x: MARGIN, y: HEAD, width: WIDTH - 2.0 * MARGIN, height: HEIGHT - HEAD - 110.0 };
+    let frame = PageFrame { x: MARGIN, y: HEAD, width: WIDTH - 2.0 * MARGIN, height: HEIGHT - HEAD - 110.0 };
     let bend = bend(path);
     let view = View::fit(&bounds(path, &bend, g), frame.inset(10.0));
     picture.clipped(frame, "turn", |p| {
@@ -61,12 +61,12 @@ pub fn turn(t: &TurnExplanation) -> Option<String> {
     Some(picture.finish())
 }
 
-fn keys() -> Vec<Key> {
+fn keys() -> Vec<LegendEntry> {
     vec![
-        Key::new(Style::area(palette::ROAD).outlined(palette::INK, 1.2), "what this turn may use of the road"),
-        Key::new(Style::line(palette::VERMILLION, 1.6), "edges that count before and after the junction"),
-        Key::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle, with its direction"),
-        Key::new(
+        LegendEntry::new(Style::area(palette::ROAD).outlined(palette::INK, 1.2), "what this turn may use of the road"),
+        LegendEntry::new(Style::line(palette::VERMILLION, 1.6), "edges that count before and after the junction"),
+        LegendEntry::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle, with its direction"),
+        LegendEntry::new(
             Style::area(palette::SKY).filled_at(0.2),
             "the vehicle, every 3 m, nominally; where it is tightest in full",
         ),
@@ -81,13 +81,13 @@ fn bend(path: &TurnPath) -> Range<usize> {
 }
 
 /// The bend with some road before and after it, and the tightest place.
-fn bounds(path: &TurnPath, bend: &Range<usize>, g: &Geometry) -> Bounds {
+fn bounds(path: &TurnPath, bend: &Range<usize>, g: &Geometry) -> BoundingBox {
     let c = &path.corridor;
     let around = (AROUND_M / c.spacing_m) as usize;
     let stations = bend.start.saturating_sub(around)..(bend.end + around).min(c.len());
     let mut points: Vec<Point> = stations.map(|k| [c.x[k], c.y[k]]).collect();
     points.push(g.place.edge);
-    Bounds::of(&points).grown(BESIDE_M)
+    BoundingBox::of(&points).grown(BESIDE_M)
 }
 
 fn swept(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View) {

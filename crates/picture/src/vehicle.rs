@@ -8,7 +8,7 @@ use super::furniture::dimension;
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
-use super::{Frame, Point, scale_bar};
+use super::{PageFrame, Point, scale_bar};
 use super::{View, bodies};
 use crate::stet::motion::Pose;
 use netcert_base::vehicle::{Unit, Vehicle};
@@ -65,7 +65,7 @@ impl Layout {
         let height = table + 22.0 * (vehicle.units.len() as f64 + 1.0) + 70.0;
         // After half a turn the front at x = 0 is at the left edge.
         let ends: Vec<Point> = vec![[0.0, 0.0], [-vehicle.length_m, 0.0]];
-        let frame = Frame { x: MARGIN, y: middle - 1.0, width: WIDTH - 2.0 * MARGIN, height: 2.0 };
+        let frame = PageFrame { x: MARGIN, y: middle - 1.0, width: WIDTH - 2.0 * MARGIN, height: 2.0 };
         let view = View::turned(&ends, std::f64::consts::PI, frame).at_most(MOST_SCALE);
         Self { poses, view, ground, rows, table, height }
     }
@@ -123,7 +123,7 @@ fn side(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     let (wheel, deck, frame) = (0.115 * tall, 0.26 * tall, 0.21 * tall);
     let block = |from_m: f64, to_m: f64, low: f64, high: f64| {
         let (a, b) = (layout.x(from_m), layout.x(to_m));
-        Frame { x: a, y: ground - scale * high, width: (b - a).max(0.0), height: scale * (high - low) }
+        PageFrame { x: a, y: ground - scale * high, width: (b - a).max(0.0), height: scale * (high - low) }
     };
     picture.group("side", |p| {
         p.segment([MARGIN - 20.0, ground], [WIDTH - MARGIN + 20.0, ground], Style::line(palette::PALE, 1.5));
@@ -281,7 +281,7 @@ fn table(picture: &mut Picture, v: &Vehicle, top: f64) {
         for (i, u) in v.units.iter().enumerate() {
             let y = top + 38.0 + 22.0 * i as f64;
             let sample = Style::area(palette::category(i)).filled_at(0.45).outlined(palette::INK, 1.0);
-            p.rect(Frame { x: MARGIN, y: y - 11.0, width: 20.0, height: 13.0 }, 1.0, sample);
+            p.rect(PageFrame { x: MARGIN, y: y - 11.0, width: 20.0, height: 13.0 }, 1.0, sample);
             let kind = if v.is_dolly(i) && !u.name.contains("dolly") { " (dolly)" } else { "" };
             let cells = [
                 format!("{} {}{kind}", i + 1, u.name),

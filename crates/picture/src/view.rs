@@ -5,7 +5,7 @@ use super::Point;
 
 /// A rectangle on the page, page units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct PageFrame {
     /// Left edge.
     pub x: f64,
     /// Upper edge.
@@ -16,7 +16,7 @@ pub struct Frame {
     pub height: f64,
 }
 
-impl Frame {
+impl PageFrame {
     /// Its centre.
     #[must_use]
     pub fn centre(&self) -> Point {
@@ -39,14 +39,14 @@ impl Frame {
 
 /// The least axis-parallel box that holds all points. It is empty until it has one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct BoundingBox {
     /// Least x and y.
     pub low: Point,
     /// Greatest x and y.
     pub high: Point,
 }
 
-impl Bounds {
+impl BoundingBox {
     /// The box of these points.
     #[must_use]
     pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
@@ -97,20 +97,20 @@ pub struct View {
 impl View {
     /// Fits all of `bounds` as large as possible into the middle of `frame`, north up.
     #[must_use]
-    pub fn fit(bounds: &Bounds, frame: Frame) -> Self {
+    pub fn fit(bounds: &BoundingBox, frame: PageFrame) -> Self {
         Self::filled(bounds, frame, [1.0, 0.0])
     }
 
     /// Fits all of `points` as large as possible into the middle of `frame`, after turning the world counter-clockwise
     /// by `turn_rad`.
     #[must_use]
-    pub fn turned(points: &[Point], turn_rad: f64, frame: Frame) -> Self {
+    pub fn turned(points: &[Point], turn_rad: f64, frame: PageFrame) -> Self {
         let turn = [turn_rad.cos(), turn_rad.sin()];
         let rotated: Vec<Point> = points.iter().map(|&p| rotate(p, turn)).collect();
-        Self::filled(&Bounds::of(&rotated), frame, turn)
+        Self::filled(&BoundingBox::of(&rotated), frame, turn)
     }
 
-    fn filled(bounds: &Bounds, frame: Frame, turn: [f64; 2]) -> Self {
+    fn filled(bounds: &BoundingBox, frame: PageFrame, turn: [f64; 2]) -> Self {
         let [w, h] = bounds.size();
         let scale = (frame.width / w.max(1e-6)).min(frame.height / h.max(1e-6));
         Self { scale, turn, from: bounds.centre(), on_page: frame.centre() }

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use super::again::{Again, StoredSet};
-use super::reuse::{Certificates, Stored, is_undone, same_turn, without_corridor};
+use super::recertification::{Recertification, StoredSet};
+use super::reuse::{Certificates, StoredNetwork, is_undone, same_turn, without_corridor};
 use super::summary::Summary;
 use crate::account::AccountRow;
-use crate::certify::{NearNodes, Outcome, Touched, TurnOutcome};
+use crate::certify::{CertificationOutcome, Dependents, NearNodes, TurnOutcome};
 use crate::network::{Differences, EdgeNo, Network, Portion};
 use crate::osm::NodeId;
 use crate::reporter::Reporter;
@@ -23,7 +23,7 @@ const ONE_IN: usize = 20;
 /// Certifies again what newer roads touch. Returns what to write, and the account of all certificates. `None` if rows cannot be changed in
 /// place: an edge or a turn gets another number, too much is touched, or the database is not the one of the roads that were read for it.
 pub(super) fn amendment<'a>(
-    stored: &'a mut Stored<'_>,
+    stored: &'a mut StoredNetwork<'_>,
     after: &'a Portion,
     turns: &'a [TurnFacts],
     settings: &Settings,
@@ -32,7 +32,7 @@ pub(super) fn amendment<'a>(
 ) -> Option<(Amendment<'a>, Vec<AccountRow>)> {
     let clock = Instant::now();
     let whole = stored.has_these_edges();
-    let Stored { roads: before, facts: turns_before, measures: known, certificates, .. } = stored;
+    let StoredNetwork { roads: before, facts: turns_before, measures: known, certificates, .. } = stored;
     let Certificates::InPlace(_, sets) = certificates else { return None };
     let network = &after.network;
     let edge_ids = |portion: &'a Portion| portion.network.edges.iter().map(|edge| edge.id);
@@ -46,7 +46,7 @@ pub(super) fn amendment<'a>(
         return None;
     }
     let differences = Differences::find(&before.network, network);
-    let mut touched = Touched::find(network, turns, &differences.edges, &differences.nodes);
+    let mut touched = Dependents::find(network, turns, &differences.edges, &differences.nodes);
     let others = TurnNo::all().zip(turns_before.iter().zip(turns));
     touched.turns.extend(others.filter(|(_, (old, new))| !same_turn(&differences, old, new)).map(|(index, _)| index));
     let most = MOST_TOUCHED.max((network.strokes.len() + turns.len()) / ONE_IN);
@@ -55,7 +55,7 @@ pub(super) fn amendment<'a>(
     }
     // What was not made before does not decide how the file is written.
     add_undone(&mut touched, network, known, sets);
-    let again = Again { network, facts: turns, touched: &touched };
+    let again = Recertification { network, facts: turns, touched: &touched };
     let measures = again.measures(settings, reporter);
     let made = again.sets(sets, reporter);
     let junctions = settings.turns.then(|| {
@@ -76,7 +76,7 @@ pub(super) fn amendment<'a>(
 
 /// Adds the strokes and turns whose certificates claim nothing, because they took too long or a machine failed.
 /// `measures`: by edge.
-fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMeasure)], sets: &[StoredSet]) {
+fn add_undone(touched: &mut Dependents, network: &Network, measures: &[(i64, EdgeMeasure)], sets: &[StoredSet]) {
     let of_edges = network.strokes_of_edges();
     for set in sets {
         let edges = set.edges.iter().zip(measures).zip(&of_edges);
@@ -86,7 +86,7 @@ fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMe
         let turns = TurnNo::all().zip(set.turns.iter().flatten());
         touched.turns.extend(turns.filter(|(_, verdict)| verdict.claims_nothing()).map(|(turn, _)| turn));
     }
-    let Touched { strokes, turns, .. } = touched;
+    let Dependents { strokes, turns, .. } = touched;
     strokes.sort_unstable();
     strokes.dedup();
     turns.sort_unstable();
@@ -95,7 +95,7 @@ fn add_undone(touched: &mut Touched, network: &Network, measures: &[(i64, EdgeMe
 
 /// The account of all certificates, those that stand and those that were made again. `measures`: by edge.
 fn account(roads: &Portion, turns: usize, measures: &[EdgeMeasure], sets: &[StoredSet]) -> Vec<AccountRow> {
-    let mut outcome = Outcome::new(&roads.network);
+    let mut outcome = CertificationOutcome::new(&roads.network);
     for (edge, &measure) in EdgeNo::all().zip(measures) {
         let verdicts = || sets.iter().filter_map(move |set| set.edges.get(edge.index()).copied());
         outcome.edge(edge, measure, without_corridor(measure, verdicts()));

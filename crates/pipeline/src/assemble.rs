@@ -12,8 +12,8 @@ use crate::store::MapChanges;
 use super::error::RunError;
 use super::new_database::{NewDatabase, Whom};
 use super::summary::Summary;
-use super::task_results::{Results, TaskResult};
-use super::tasks::{Divided, Job};
+use super::task_results::{TaskResult, TaskResults};
+use super::tasks::{Divided, TaskJob};
 
 /// The input of [`assemble`].
 pub struct Assemble<'a> {
@@ -28,7 +28,7 @@ pub struct Assemble<'a> {
     /// What the tasks were made from.
     pub divided: &'a Divided,
     /// For which vehicles the tasks were certified, and how.
-    pub job: &'a Job,
+    pub job: &'a TaskJob,
     /// The options as JSON, for the `run` record, as `ingest` writes them.
     pub parameters: serde_json::Value,
     /// The time now in UTC.
@@ -57,6 +57,6 @@ pub fn assemble(
         now,
     };
     let Divided { tasks, extract_blake3, .. } = divided;
-    let results = Results { each, tasks: *tasks, extract_blake3, failed: BTreeSet::new() };
+    let results = TaskResults { each, tasks: *tasks, extract_blake3, failed: BTreeSet::new() };
     database.make(Whom::Chosen(&|_| Ok(job.models.clone())), Some(results), reporter).map(|made| made.summary)
 }

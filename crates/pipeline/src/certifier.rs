@@ -5,20 +5,20 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::account::AccountRow;
-use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
+use crate::certify::{CertificationOutcome, Job, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
 use crate::network::{EdgeNo, Network, Portion};
 use crate::osm::{LonLat, NodeId};
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{Checkpoint, PartOfWork, Stage, VehicleNo, Writer};
+use crate::store::{Checkpoint, CheckpointStage, PartOfWork, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, TurnNo, junction_areas, junction_places, turn_facts};
 
 use super::edge_verdicts::EdgeVerdicts;
 use super::error::RunError;
 use super::reuse::{Earlier, without_corridor};
-use super::roads::Roads;
+use super::roads::ExtractRoads;
 use super::share::Share;
 use super::summary::{Summary, TurnWork};
 use super::task_results::{failed_stroke, failed_turn, unknown_rest};
@@ -48,14 +48,14 @@ impl Certifier<'_> {
     /// Certifies all edges. Takes what an earlier database or an earlier run has. Returns the verdicts, and the account.
     pub(super) fn strokes(
         &self,
-        roads: &mut Roads<'_>,
+        roads: &mut ExtractRoads<'_>,
         writer: &mut Writer,
         checkpoint: &mut Checkpoint,
         summary: &mut Summary,
     ) -> Result<(EdgeVerdicts, Vec<AccountRow>), RunError> {
         let clock = Instant::now();
         let mut verdicts = EdgeVerdicts::new(roads.edges() as usize, self.models, self.settings);
-        let mut outcome = Outcome::default();
+        let mut outcome = CertificationOutcome::default();
         self.reporter.begin("certificates", u64::from(roads.edges()));
         let mut done = 0;
         for number in 0..roads.portions() {
@@ -83,7 +83,7 @@ impl Certifier<'_> {
         work: &PortionWork<'_>,
         writer: &mut Writer,
         checkpoint: &mut Checkpoint,
-        outcome: &mut Outcome,
+        outcome: &mut CertificationOutcome,
         verdicts: &mut EdgeVerdicts,
     ) -> Result<(), RunError> {
         let PortionWork { number, portion, share } = work;
@@ -109,7 +109,7 @@ impl Certifier<'_> {
             verdicts.set(vehicle, edge, certificate.conclusion.verdict);
             writer.certificate(self.numbers[vehicle], policy, &EdgeCertificate { edge, ..certificate.clone() })
         };
-        let part = (Stage::Strokes, *number as u32);
+        let part = (CheckpointStage::Strokes, *number as u32);
         checkpoint.each(part, |batch: Vec<StrokeMade>| {
             batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
         })?;
@@ -132,7 +132,7 @@ impl Certifier<'_> {
     /// Certifies all turns. Takes what an earlier database or an earlier run has.
     pub(super) fn turns(
         &self,
-        roads: &mut Roads<'_>,
+        roads: &mut ExtractRoads<'_>,
         verdicts: &EdgeVerdicts,
         writer: &mut Writer,
         checkpoint: &mut Checkpoint,
@@ -200,7 +200,7 @@ impl Certifier<'_> {
         let mut sink = |vehicle: usize, certificate: &TurnCertificate| {
             writer.turn_certificate(self.numbers[vehicle], policy, first, certificate)
         };
-        let part = (Stage::Turns, *number as u32);
+        let part = (CheckpointStage::Turns, *number as u32);
         checkpoint.each(part, |batch: Vec<TurnMade>| {
             batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
         })?;

@@ -11,7 +11,7 @@
 //! | `vehicle_record`, `select` | the record of a vehicle, and the vehicles of a run |
 //! | `source`, `roads` | what a map is read from, and its roads as portions |
 //! | `edge_verdicts`, `share` | verdicts that turns need, and the progress of one portion |
-//! | `again` | what a change touches, certified again in every set of a database |
+//! | `recertification` | what a change touches, certified again in every set of a database |
 //! | `reuse`, `amendment` | what stands of an earlier database, and the rows of it that change in place |
 //! | `tasks`, `task_results` | a region as tasks of other machines, and what these made |
 //! | `certifier` | the certificates of a new database, portion by portion |
@@ -32,7 +32,6 @@ use netcert_rows as rows;
 use netcert_rows::settings;
 use netcert_store as store;
 
-mod again;
 mod amendment;
 mod assemble;
 mod certifier;
@@ -43,6 +42,7 @@ mod identity;
 mod ingest;
 mod new_database;
 pub mod program;
+mod recertification;
 mod replacement;
 mod reuse;
 mod roads;
@@ -56,16 +56,16 @@ mod tasks;
 mod update;
 mod vehicle_record;
 
-pub use again::VerdictChanges;
 pub use assemble::{Assemble, assemble};
 pub use error::RunError;
 pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, What, change_evidence};
 pub use ingest::{Ingest, ingest};
+pub use recertification::VerdictChanges;
 pub use replacement::{Certify, certify};
 pub use roads::{EDGES_AT_ONCE, read_network};
 pub use select::{Selection, own_countries, selected};
 pub use summary::{StageSummary, Summary, TurnWork};
 pub use task_results::TaskResult;
-pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, NeededTasks, StrokesDone, Task, TaskError, divide};
+pub use tasks::{Divided, EDGES_OF_A_TASK, NeededTasks, StrokesDone, Task, TaskError, TaskJob, divide};
 pub use update::{Newer, Update, run_of_extract, update};
 pub use vehicle_record::record;

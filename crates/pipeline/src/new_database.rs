@@ -12,7 +12,7 @@ use crate::store::{MapChanges, Run};
 
 use super::error::RunError;
 use super::identity;
-use super::reuse::{self, Older, Stored};
+use super::reuse::{self, OlderDatabase, StoredNetwork};
 use super::source::{self, utc};
 use super::summary::Summary;
 
@@ -38,7 +38,7 @@ pub(super) enum Whom<'a> {
     /// Those that a function chooses.
     Chosen(&'a Choose<'a>),
     /// Those of an earlier database. What it has of the same roads is taken over.
-    Earlier(Older<'a>, Vec<Model>),
+    Earlier(OlderDatabase<'a>, Vec<Model>),
 }
 
 /// What a run made.
@@ -69,18 +69,18 @@ impl NewDatabase<'_> {
     /// Reads roads, and beside that what an earlier database has, if any of it can stand.
     pub(super) fn beside<'d, T>(
         &self,
-        older: Older<'d>,
+        older: OlderDatabase<'d>,
         models: &[Model],
         read: impl FnOnce() -> T,
         reporter: &dyn Reporter,
-    ) -> Result<(T, Option<Stored<'d>>), RunError> {
+    ) -> Result<(T, Option<StoredNetwork<'d>>), RunError> {
         if let Some(why) = reuse::differs(older.database, models, self.countries, self.settings)? {
             reporter.note(&format!("all is certified again: {why}"));
             return Ok((read(), None));
         }
         let (countries, settings) = (self.countries, self.settings);
         std::thread::scope(|scope| {
-            let stored = scope.spawn(move || Stored::read(older, countries, settings));
+            let stored = scope.spawn(move || StoredNetwork::read(older, countries, settings));
             let read = read();
             let stored = stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
             Ok((read, Some(stored)))

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::certify::{NearNodes, Touched};
+use crate::certify::{Dependents, NearNodes};
 use crate::network::{Differences, EdgeNo, Network, Portion};
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
@@ -20,9 +20,9 @@ use crate::store::{self, CertifiedSet, Database, StoredPlans};
 use crate::turns::{JunctionArea, TurnFacts, TurnNo, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
-use super::again::StoredSet;
 use super::error::RunError;
 use super::identity;
+use super::recertification::StoredSet;
 use super::roads::{Portions, read_roads};
 use super::source::MapSource;
 use super::summary::{StageSummary, Summary};
@@ -48,11 +48,11 @@ pub(super) struct Earlier {
     /// Areas of its junctions, by node.
     junctions: Vec<JunctionArea>,
     /// Strokes and nodes of the new network that do not stand. It has no turns.
-    touched: Touched,
+    touched: Dependents,
 }
 
 /// An earlier database.
-pub(super) struct Older<'a> {
+pub(super) struct OlderDatabase<'a> {
     pub(super) database: &'a mut Database,
     /// Ids of the vehicles whose certificates may stand.
     pub(super) vehicles: Vec<String>,
@@ -61,7 +61,7 @@ pub(super) struct Older<'a> {
 }
 
 /// An earlier database with the roads that it has, before they are compared with newer ones.
-pub(super) struct Stored<'a> {
+pub(super) struct StoredNetwork<'a> {
     database: &'a mut Database,
     vehicles: Vec<String>,
     pub(super) roads: Portion,
@@ -101,12 +101,12 @@ impl KeptSets {
     }
 }
 
-impl<'a> Stored<'a> {
+impl<'a> StoredNetwork<'a> {
     /// Reads roads and verdicts beside each other. If the extract is known, the network is built from it again, which takes a third of the time
     /// of loading it.
-    pub(super) fn read(older: Older<'a>, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
+    pub(super) fn read(older: OlderDatabase<'a>, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
         let clock = Instant::now();
-        let Older { database, vehicles, made_from } = older;
+        let OlderDatabase { database, vehicles, made_from } = older;
         let path = database.path().to_owned();
         let in_place = made_from.is_some();
         let of_database = || {
@@ -171,12 +171,23 @@ pub(super) fn without_corridor(
 impl Earlier {
     /// Finds what stands in a newer network. `None` if the earlier database lacks certificates, or has other edges than the network that was
     /// read for it.
-    pub(super) fn find(stored: Stored<'_>, network: &Network, settings: &Settings) -> Result<Option<Self>, RunError> {
+    pub(super) fn find(
+        stored: StoredNetwork<'_>,
+        network: &Network,
+        settings: &Settings,
+    ) -> Result<Option<Self>, RunError> {
         if !stored.has_these_edges() {
             return Ok(None);
         }
-        let Stored { database, vehicles, roads: Portion { network: old, .. }, facts, measures, certificates, .. } =
-            stored;
+        let StoredNetwork {
+            database,
+            vehicles,
+            roads: Portion { network: old, .. },
+            facts,
+            measures,
+            certificates,
+            ..
+        } = stored;
         let KeptSets { sets, junctions } = match certificates {
             Certificates::Read(kept) => kept,
             Certificates::InPlace(locked, _) => {
@@ -190,7 +201,7 @@ impl Earlier {
             return Ok(None);
         }
         let differences = Differences::find(&old, network);
-        let touched = Touched::find(network, &[], &differences.edges, &differences.nodes);
+        let touched = Dependents::find(network, &[], &differences.edges, &differences.nodes);
         let measures = measures.into_iter().map(|(_, measure)| measure).collect();
         Ok(Some(Self { differences, measures, sets, facts, junctions, touched }))
     }
@@ -236,7 +247,7 @@ impl Earlier {
         network: &Network,
         turns: &'a [TurnFacts],
     ) -> impl Iterator<Item = (TurnNo, Vec<(&'a store::StoredCertificate, Option<StoredPlan>)>)> {
-        let touched = Touched::find(network, turns, &self.differences.edges, &self.differences.nodes);
+        let touched = Dependents::find(network, turns, &self.differences.edges, &self.differences.nodes);
         let touched: FxHashSet<TurnNo> = touched.turns.into_iter().collect();
         let by_id: FxHashMap<i64, TurnNo> =
             TurnNo::all().zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::error::RunError;
-use super::source::{self, MapSource, Origin};
+use super::source::{self, MapSource, SourceDescription};
 use super::summary::Summary;
 use crate::account::AccountRow;
-use crate::network::{Area, Division, Ground, Network, Portion, StrokeOptions};
+use crate::network::{Division, Ground, MappedArea, Network, Portion, StrokeOptions};
 use crate::osm::changes::Changes;
 use crate::osm::facts::{Countries, CrossSection, Jurisdiction, WayFacts, cross_sections};
 use crate::osm::{Backdrop, Extract, LonLat};
@@ -30,7 +30,7 @@ type Places<'c> = Box<dyn Fn(LonLat) -> Jurisdiction + Sync + 'c>;
 type Sections<'c> = Box<dyn Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
 
 /// The roads of an extract.
-pub(super) struct Roads<'c> {
+pub(super) struct ExtractRoads<'c> {
     /// `None` if one portion is the whole network.
     divided: Option<Box<(Ground<Places<'c>, Sections<'c>>, Division)>>,
     /// The portion that was built last, with its number.
@@ -38,7 +38,7 @@ pub(super) struct Roads<'c> {
     account: Vec<AccountRow>,
 }
 
-impl<'c> Roads<'c> {
+impl<'c> ExtractRoads<'c> {
     /// The roads of an extract, in portions.
     pub(super) fn new(extract: Extract, countries: &'c Countries, portions: Portions) -> Self {
         let rules = countries.rules();
@@ -128,7 +128,7 @@ impl<'c> Roads<'c> {
     }
 
     /// The areas of the network, once every portion is counted.
-    pub(super) fn areas(&self) -> Vec<Area> {
+    pub(super) fn areas(&self) -> Vec<MappedArea> {
         let whole = || self.current.as_ref().map_or_else(Vec::new, |(_, portion)| portion.network.areas.all().to_vec());
         self.divided.as_ref().map_or_else(whole, |divided| divided.0.kept_areas(&divided.1))
     }
@@ -158,12 +158,12 @@ pub(super) fn read_roads<'c>(
     behind: &mut dyn FnMut(&[Backdrop]) -> Result<(), RunError>,
     reporter: &dyn Reporter,
     summary: &mut Summary,
-) -> Result<(Roads<'c>, Origin), RunError> {
+) -> Result<(ExtractRoads<'c>, SourceDescription), RunError> {
     let (mut extract, origin) = source::read(source, reporter, summary)?;
     behind(&std::mem::take(&mut extract.backdrop))?;
     let clock = Instant::now();
     reporter.begin("network", 0);
-    let roads = Roads::new(extract, countries, portions);
+    let roads = ExtractRoads::new(extract, countries, portions);
     reporter.end();
     summary.stage("network", clock, u64::from(roads.edges()), "directed edges");
     Ok((roads, origin))

@@ -19,7 +19,7 @@ pub(super) const OVERTURE: &str = "overture";
 
 /// What a source says of itself.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Origin {
+pub(super) struct SourceDescription {
     pub(super) header: HeaderInfo,
     /// Hash of its content.
     pub(super) blake3: String,
@@ -52,7 +52,7 @@ pub(super) fn read(
     source: MapSource<'_>,
     reporter: &dyn Reporter,
     summary: &mut Summary,
-) -> Result<(Extract, Origin), RunError> {
+) -> Result<(Extract, SourceDescription), RunError> {
     let clock = std::time::Instant::now();
     let MapSource { inputs, changes } = source;
     let Content { extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
@@ -61,7 +61,8 @@ pub(super) fn read(
     };
     summary.account.extend(account);
     summary.stage("read", clock, read.0, read.1);
-    let origin = Origin { header: extract.account.header.clone(), blake3: extract.account.blake3.clone(), segments };
+    let origin =
+        SourceDescription { header: extract.account.header.clone(), blake3: extract.account.blake3.clone(), segments };
     if extract.ways.is_empty() {
         let left_out = left_out.iter().map(|(why, n)| format!("{why} {n}")).collect::<Vec<_>>().join(", ");
         let account = if left_out.is_empty() { format!("no {} at all", read.1) } else { left_out };

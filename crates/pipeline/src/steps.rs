@@ -18,11 +18,11 @@ use super::error::RunError;
 use super::evidence;
 use super::identity::Identity;
 use super::new_database::{Made, NewDatabase, Whom};
-use super::reuse::{Earlier, Older, Stored};
-use super::roads::{Portions, Roads, read_roads};
-use super::source::{self, MapSource, Origin};
+use super::reuse::{Earlier, OlderDatabase, StoredNetwork};
+use super::roads::{ExtractRoads, Portions, read_roads};
+use super::source::{self, MapSource, SourceDescription};
 use super::summary::Summary;
-use super::task_results::Results;
+use super::task_results::TaskResults;
 use super::vehicle_record::record;
 
 impl<'a> NewDatabase<'a> {
@@ -30,7 +30,7 @@ impl<'a> NewDatabase<'a> {
     pub(super) fn make(
         self,
         whom: Whom<'_>,
-        mut results: Option<Results<'_>>,
+        mut results: Option<TaskResults<'_>>,
         reporter: &'a dyn Reporter,
     ) -> Result<Made, RunError> {
         let mut steps = DatabaseSteps::begin(self, whom, results.is_some(), reporter)?;
@@ -53,15 +53,15 @@ struct DatabaseSteps<'a, 'e> {
     writer: Writer,
     register: Option<Register>,
     measured: CarriedOver,
-    roads: Roads<'a>,
-    origin: Origin,
+    roads: ExtractRoads<'a>,
+    origin: SourceDescription,
     vehicles: RunVehicles<'e>,
 }
 
 /// The vehicles, and what an earlier database has of them.
 struct RunVehicles<'e> {
     models: Vec<Model>,
-    stored: Option<Stored<'e>>,
+    stored: Option<StoredNetwork<'e>>,
     /// Turns of the roads, where an earlier database is read.
     facts: Vec<TurnFacts>,
 }
@@ -107,7 +107,7 @@ impl<'a, 'e> DatabaseSteps<'a, 'e> {
             }
             Whom::Earlier(older, models) => with_earlier(&ask, older, models, read, reporter)?,
         };
-        summary.stages.extend(vehicles.stored.iter().map(Stored::stage));
+        summary.stages.extend(vehicles.stored.iter().map(StoredNetwork::stage));
         if let Some(why) = writer.register_lost() {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
@@ -117,7 +117,7 @@ impl<'a, 'e> DatabaseSteps<'a, 'e> {
     }
 
     /// What an earlier run of the same work has finished, and what other machines have.
-    fn checkpoint(&mut self, results: Option<&mut Results<'_>>) -> Result<Checkpoint, RunError> {
+    fn checkpoint(&mut self, results: Option<&mut TaskResults<'_>>) -> Result<Checkpoint, RunError> {
         let ask = &self.ask;
         let mut identity = Identity::new(&self.origin.blake3, ask.countries, ask.settings)?;
         identity.add(&format!("{} portions of {} edges", self.roads.portions(), ask.edges_at_once));
@@ -234,11 +234,11 @@ impl<'a, 'e> DatabaseSteps<'a, 'e> {
 /// Reads roads with their turns, and beside that what an earlier database has.
 fn with_earlier<'a, 'e>(
     ask: &NewDatabase<'a>,
-    older: Older<'e>,
+    older: OlderDatabase<'e>,
     models: Vec<Model>,
-    read: impl FnOnce() -> Result<(Roads<'a>, Origin), RunError>,
+    read: impl FnOnce() -> Result<(ExtractRoads<'a>, SourceDescription), RunError>,
     reporter: &dyn Reporter,
-) -> Result<(Roads<'a>, Origin, RunVehicles<'e>), RunError> {
+) -> Result<(ExtractRoads<'a>, SourceDescription, RunVehicles<'e>), RunError> {
     let read = || {
         let (roads, origin) = read()?;
         let network = roads.only().filter(|_| ask.settings.turns).map(|portion| &portion.network);

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::account::AccountRow;
-use netcert_base::counted::WorkCount;
+use netcert_base::work_count::WorkCount;
 
 /// The summary of one stage of a run.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::error::RunError;
 use crate::network::EdgeNo;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, TurnMade};
-use crate::store::{Checkpoint, PartOfWork, Stage};
+use crate::store::{Checkpoint, CheckpointStage, PartOfWork};
 use crate::turns::TurnNo;
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -20,7 +20,7 @@ pub struct TaskResult {
 }
 
 /// The results of all tasks, as they are taken over.
-pub(super) struct Results<'a> {
+pub(super) struct TaskResults<'a> {
     pub(super) each: &'a mut dyn Iterator<Item = Result<TaskResult, RunError>>,
     pub(super) tasks: u32,
     pub(super) extract_blake3: &'a str,
@@ -28,7 +28,7 @@ pub(super) struct Results<'a> {
     pub(super) failed: BTreeSet<PartOfWork>,
 }
 
-impl Results<'_> {
+impl TaskResults<'_> {
     /// Reads all results into `checkpoint`, after a look whether they belong to the extract `input`, whose hash is `hash`, and to its division
     /// into so many `portions`.
     pub(super) fn take_over(
@@ -73,8 +73,8 @@ pub(super) fn unknown_rest(
         return Ok(true);
     }
     let what = match part.0 {
-        Stage::Strokes => "strokes",
-        Stage::Turns => "turns",
+        CheckpointStage::Strokes => "strokes",
+        CheckpointStage::Turns => "turns",
     };
     Err(RunError::Misfit(format!("the results of task {} lack {left} {what}; certify it again", part.1)))
 }

@@ -1,7 +1,7 @@
 //! A region as tasks for many machines, and what a machine does with a task.
 //!
-//! [`divide`] makes the tasks. A machine needs a task and a [`Job`], nothing else. First [`Job::strokes`] certifies the edges of every task.
-//! Then [`Job::turns`] certifies the turns, which depend on the verdicts of edges in the tasks around. [`super::assemble`] makes the database of
+//! [`divide`] makes the tasks. A machine needs a task and a [`TaskJob`], nothing else. First [`TaskJob::strokes`] certifies the edges of every task.
+//! Then [`TaskJob::turns`] certifies the turns, which depend on the verdicts of edges in the tasks around. [`super::assemble`] makes the database of
 //! all results; it is the one that `ingest` makes, byte for byte.
 
 use std::path::Path;
@@ -16,7 +16,7 @@ use super::roads::{Portions, read_roads};
 use super::source::MapSource;
 use super::summary::Summary;
 use crate::certify::{Job as StrokeJob, TurnJob, by_cell, make_strokes, make_turns};
-use crate::network::{Cell, EdgeNo, Portion};
+use crate::network::{EdgeNo, GridCell, Portion};
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
 use crate::reporter::{Reporter, Silent};
@@ -24,7 +24,7 @@ use crate::rows::{StrokeMade, TurnMade};
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
-use crate::store::Stage;
+use crate::store::CheckpointStage;
 use crate::turns::{Kerbs, TurnFacts, TurnNo, turn_facts};
 use crate::vehicle::{Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
@@ -46,7 +46,7 @@ pub struct Task {
     pub turns: u64,
     /// Tasks whose verdicts its turns may need.
     pub needs: Vec<u32>,
-    /// The network, for [`Job`].
+    /// The network, for [`TaskJob`].
     pub bytes: Vec<u8>,
 }
 
@@ -145,7 +145,7 @@ pub enum TaskError {
 }
 
 /// For which vehicles tasks are certified, and how.
-pub struct Job {
+pub struct TaskJob {
     /// Settings of the certificates.
     pub settings: Settings,
     /// The vehicles.
@@ -173,14 +173,14 @@ pub enum NeededTasks {
 pub struct StrokesDone {
     /// The certificates, for [`super::assemble`].
     pub work: Vec<u8>,
-    /// The verdicts, for [`Job::turns`] of the tasks around.
+    /// The verdicts, for [`TaskJob::turns`] of the tasks around.
     pub verdicts: Vec<u8>,
 }
 
 /// Verdicts of edges, each with its number in the whole network.
 type Verdicts = Vec<(EdgeNo, Vec<Verdict>)>;
 
-impl Job {
+impl TaskJob {
     /// A job as text. The same job gives the same text.
     ///
     /// # Errors
@@ -196,7 +196,7 @@ impl Job {
         serde_json::to_string(&written).map_err(|e| damaged(e.to_string()))
     }
 
-    /// Reads a job that [`Job::written`] wrote.
+    /// Reads a job that [`TaskJob::written`] wrote.
     ///
     /// # Errors
     /// Another build of the program wrote it, or the text is damaged.
@@ -235,14 +235,14 @@ impl Job {
         }
         let mut verdicts: Verdicts = verdicts.into_iter().collect();
         verdicts.sort_unstable_by_key(|(edge, _)| *edge);
-        Ok(StrokesDone { work: packed(&((Stage::Strokes, number), done))?, verdicts: packed(&verdicts)? })
+        Ok(StrokesDone { work: packed(&((CheckpointStage::Strokes, number), done))?, verdicts: packed(&verdicts)? })
     }
 
     /// Certifies the turns that a task owns. `verdicts` are those of the task itself and of all that it needs, and `needed` says how far these
     /// tasks are done.
     ///
     /// # Errors
-    /// As [`Job::strokes`]; or an edge has no verdict, and none of the tasks failed.
+    /// As [`TaskJob::strokes`]; or an edge has no verdict, and none of the tasks failed.
     pub fn turns(
         &self,
         task: &[u8],
@@ -279,7 +279,7 @@ impl Job {
             done.push(made);
             Ok(())
         })?;
-        packed(&((Stage::Turns, number), done))
+        packed(&((CheckpointStage::Turns, number), done))
     }
 }
 
@@ -305,8 +305,8 @@ fn packed<T: Serialize>(value: &T) -> Result<Vec<u8>, TaskError> {
 }
 
 /// The first column and row, and the last column and row.
-fn corners(cells: impl Iterator<Item = Cell>) -> [u32; 4] {
-    cells.fold([u32::MAX, u32::MAX, 0, 0], |[west, north, east, south], Cell { y, x }| {
+fn corners(cells: impl Iterator<Item = GridCell>) -> [u32; 4] {
+    cells.fold([u32::MAX, u32::MAX, 0, 0], |[west, north, east, south], GridCell { y, x }| {
         [west.min(x), north.min(y), east.max(x), south.max(y)]
     })
 }

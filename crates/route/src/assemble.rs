@@ -7,9 +7,9 @@
 
 use std::ops::Range;
 
-use super::blend::{self, Sample};
+use super::blend::{self, BlendPoint};
 use super::drive::{Drive, Join};
-use super::grounds::Ground;
+use super::grounds::TurnArea;
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{EdgeNo, Movement, MovementKind, Movements, Network, PassageKind};
@@ -113,7 +113,7 @@ pub fn passes_over(network: &Network, at: PartKind) -> Option<PassageKind> {
 
 /// The edges of a route, with its beginning and end on the first and last edge.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Way<'w> {
+pub struct DrivenWay<'w> {
     /// The edges.
     pub drive: &'w Drive,
     /// The share of the first edge before the route's beginning, 0..=1.
@@ -131,7 +131,7 @@ pub fn assemble(
     movements: &Movements,
     strokes: &mut Strokes,
     menu: &mut Menu,
-    way: &Way<'_>,
+    way: &DrivenWay<'_>,
     stop: &Stop,
 ) -> Result<RoutePath, AssemblyError> {
     let edges = &way.drive.edges;
@@ -157,7 +157,7 @@ pub fn assemble(
             at,
             spacing_m: piece.corridor.spacing_m,
             samples: in_frame(&piece, frame)?,
-            ground: Ground::of(&piece, frame)?,
+            ground: TurnArea::of(&piece, frame)?,
             approach: piece.approach,
             departure: piece.departure,
             reach: piece.reach,
@@ -194,26 +194,26 @@ pub(super) fn movement(movements: &Movements, from: EdgeNo, arcs: &[EdgeNo], to:
 struct Between {
     at: PartKind,
     spacing_m: f64,
-    samples: Vec<Sample>,
-    ground: Option<Ground>,
+    samples: Vec<BlendPoint>,
+    ground: Option<TurnArea>,
     approach: Joint,
     departure: Joint,
     reach: LengthClass,
 }
 
-fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<Sample>, FrameError> {
+fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<BlendPoint>, FrameError> {
     samples(&piece.corridor, piece.turn.clone(), piece.frame, frame)
 }
 
 /// Stations of a corridor, converted from its own frame into the route's frame.
-fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Result<Vec<Sample>, FrameError> {
+fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Result<Vec<BlendPoint>, FrameError> {
     let stations = stations.start.min(c.len())..stations.end.min(c.len());
     let mut at: Vec<[f64; 2]> = stations.clone().map(|k| [c.x[k], c.y[k]]).collect();
     if own != frame {
         let degrees = own.inverse(&at)?;
         at = frame.forward_degrees(degrees.into_iter().map(|[lon, lat]| (lon, lat)).collect())?;
     }
-    Ok(stations.zip(at).map(|(k, at)| Sample { at, left_m: c.left_m[k], right_m: c.right_m[k] }).collect())
+    Ok(stations.zip(at).map(|(k, at)| BlendPoint { at, left_m: c.left_m[k], right_m: c.right_m[k] }).collect())
 }
 
 /// The number of stations of one round of a loop, from the beginning of its first edge back to that place. The last edge ends
@@ -230,7 +230,7 @@ fn round(line: &StrokeLine) -> usize {
 /// A run of edges straight on along one stroke: stations `from..=to` of an unrolled corridor.
 struct Leg {
     /// All stations that may be needed, in the route's frame, from station `first` on.
-    samples: Vec<Sample>,
+    samples: Vec<BlendPoint>,
     first: usize,
     from: usize,
     to: usize,
@@ -241,7 +241,7 @@ struct Leg {
 impl Leg {
     fn new(
         strokes: &mut Strokes,
-        way: &Way<'_>,
+        way: &DrivenWay<'_>,
         range: Range<usize>,
         frame: Frame,
         before: Option<&Between>,
@@ -351,13 +351,13 @@ impl Leg {
 /// The points so far.
 #[derive(Default)]
 struct Strung {
-    samples: Vec<Sample>,
+    samples: Vec<BlendPoint>,
     kinds: Vec<PartKind>,
 }
 
 impl Strung {
     /// Appends a point. A point close to the last one is merged with it, with the lesser half-widths.
-    fn push(&mut self, kind: PartKind, sample: Sample) {
+    fn push(&mut self, kind: PartKind, sample: BlendPoint) {
         if let Some(last) = self.samples.last_mut()
             && (sample.at[0] - last.at[0]).hypot(sample.at[1] - last.at[1]) < LEAST_STEP_M
         {
@@ -389,7 +389,7 @@ impl Strung {
     }
 
     fn finish(self, frame: Frame, spacing_m: f64, turns: &[Between]) -> Result<RoutePath, AssemblyError> {
-        let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
+        let column = |of: fn(&BlendPoint) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
         let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
         let (left_m, right_m) = (column(|s| s.left_m), column(|s| s.right_m));
         let mut corridor = crate::corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)

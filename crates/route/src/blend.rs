@@ -6,7 +6,7 @@
 
 /// A point of the centreline with the half-widths there.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
+pub(super) struct BlendPoint {
     pub(super) at: [f64; 2],
     pub(super) left_m: f64,
     pub(super) right_m: f64,
@@ -21,7 +21,7 @@ const LEAST_HALF_WIDTH_M: f64 = 0.2;
 
 /// The blended stretch, and the points of the turns that it replaces.
 pub(super) struct Blended {
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<BlendPoint>,
     /// Number of points to drop at the end of the turn before.
     pub(super) dropped_before: usize,
     /// Number of points to drop at the beginning of the turn after.
@@ -43,7 +43,7 @@ struct Crossing {
 
 /// Blends two paths along a stroke. `before` ends at the last of the stroke's points, `after` begins at the first. `None` if the
 /// paths cannot be blended.
-pub(super) fn blend(before: &[Sample], after: &[Sample], stroke: &[Sample]) -> Option<Blended> {
+pub(super) fn blend(before: &[BlendPoint], after: &[BlendPoint], stroke: &[BlendPoint]) -> Option<Blended> {
     let last = stroke.len().checked_sub(1).filter(|&last| last > 0)?;
     let mut samples = Vec::with_capacity(stroke.len());
     let (mut kept_before, mut dropped_after) = (0, 0);
@@ -65,12 +65,12 @@ pub(super) fn blend(before: &[Sample], after: &[Sample], stroke: &[Sample]) -> O
             return None;
         }
         let [x, y] = stroke[k].at;
-        samples.push(Sample { at: [x - offset_m * tangent[1], y + offset_m * tangent[0]], left_m, right_m });
+        samples.push(BlendPoint { at: [x - offset_m * tangent[1], y + offset_m * tangent[0]], left_m, right_m });
     }
     Some(Blended { samples, dropped_before: before.len() - kept_before, dropped_after })
 }
 
-fn direction(points: &[Sample], k: usize) -> Option<[f64; 2]> {
+fn direction(points: &[BlendPoint], k: usize) -> Option<[f64; 2]> {
     let (a, b) = (points[k.saturating_sub(1)].at, points[(k + 1).min(points.len() - 1)].at);
     let u = [b[0] - a[0], b[1] - a[1]];
     let length = u[0].hypot(u[1]);
@@ -78,8 +78,8 @@ fn direction(points: &[Sample], k: usize) -> Option<[f64; 2]> {
 }
 
 /// The crossing of a path with the normal at `at` that is nearest to `at`.
-fn crossing(path: &[Sample], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing> {
-    let local = |p: &Sample| {
+fn crossing(path: &[BlendPoint], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing> {
+    let local = |p: &BlendPoint| {
         let d = [p.at[0] - at[0], p.at[1] - at[1]];
         [d[0] * tangent[0] + d[1] * tangent[1], d[1] * tangent[0] - d[0] * tangent[1]]
     };
@@ -118,9 +118,9 @@ mod tests {
     use super::*;
 
     /// A path along x with the given offset to the left at each metre.
-    fn path(offset_m: impl Fn(f64) -> f64, [left_m, right_m]: [f64; 2]) -> Vec<Sample> {
+    fn path(offset_m: impl Fn(f64) -> f64, [left_m, right_m]: [f64; 2]) -> Vec<BlendPoint> {
         let metres = (0..=20).map(f64::from);
-        metres.map(|x| Sample { at: [x, offset_m(x)], left_m, right_m }).collect()
+        metres.map(|x| BlendPoint { at: [x, offset_m(x)], left_m, right_m }).collect()
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
 
-use super::assemble::{PartKind, Way};
+use super::assemble::{DrivenWay, PartKind};
 use super::conditions::{Conditional, Fitted, Fitter, Unfit, conditional_access};
 use super::graph::{Access, BARRED};
 use super::obstacles::{self, Refutation};
@@ -69,7 +69,7 @@ impl Planner {
         let mut hopeless = Hopeless::default();
         for _ in 0..WAYS.min(question.tries.max(1)) {
             let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
-            let way = Way { drive: &found.drive, start, end };
+            let way = DrivenWay { drive: &found.drive, start, end };
             match fitter.fit(&way, &access, stop)? {
                 Ok(Fitted { drive, certified, supposed, suffices }) => {
                     found.drive = drive;

@@ -43,14 +43,14 @@ pub struct Graph {
 }
 
 /// A state of the search: the number of an edge, or, beyond all edges, a node of the forbidden sequences.
-pub(super) type State = u32;
+pub(super) type SearchState = u32;
 
 /// The value for a step that is no passage.
 pub(super) const NO_PASSAGE: u32 = u32::MAX;
 
 /// A step from the end of one edge to the beginning of the next.
-pub(super) struct Step {
-    pub(super) next: State,
+pub(super) struct GraphStep {
+    pub(super) next: SearchState,
     /// The cost of the movement or passage and all prices, including that of the next edge, but without the next edge's cost.
     pub(super) cost: u64,
     /// Index in [`Movements::passages`], or [`NO_PASSAGE`].
@@ -148,37 +148,37 @@ impl Graph {
     }
 
     /// Whether the vehicle has come from open road into roads that are open to its destination only.
-    fn inside(&self, state: State) -> bool {
+    fn inside(&self, state: SearchState) -> bool {
         state as usize >= self.layer()
     }
 
     /// The state of a vehicle that stops in this state and goes on later: where it stops is a destination.
-    pub(super) fn after_stop(&self, state: State) -> State {
+    pub(super) fn after_stop(&self, state: SearchState) -> SearchState {
         if self.inside(state) { state - self.layer() as u32 } else { state }
     }
 
     /// Both states of a vehicle that arrives in the first one's edge: from open road, and from roads like it.
-    pub(super) fn arrivals(&self, state: State) -> impl Iterator<Item = State> {
+    pub(super) fn arrivals(&self, state: SearchState) -> impl Iterator<Item = SearchState> {
         let other = state + self.layer() as u32;
         [state, other].into_iter().filter(|&state| (state as usize) < self.states())
     }
 
     /// The state of an edge on which a way begins.
-    pub(super) fn first(&self, edge: EdgeNo) -> Option<State> {
+    pub(super) fn first(&self, edge: EdgeNo) -> Option<SearchState> {
         self.bans.after(0, edge).map(|within| self.state(edge, within))
     }
 
-    pub(super) fn edge_of(&self, state: State) -> EdgeNo {
+    pub(super) fn edge_of(&self, state: SearchState) -> EdgeNo {
         let state = self.after_stop(state);
         let within = (state as usize).checked_sub(self.network().edges.len());
         within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(EdgeNo::new(state))
     }
 
-    fn within(&self, state: State) -> Within {
+    fn within(&self, state: SearchState) -> Within {
         self.after_stop(state).saturating_sub(self.network().edges.len() as u32)
     }
 
-    fn state(&self, edge: EdgeNo, within: Within) -> State {
+    fn state(&self, edge: EdgeNo, within: Within) -> SearchState {
         if within == 0 { edge.get() } else { self.network().edges.len() as u32 + within }
     }
 
@@ -193,7 +193,7 @@ impl Graph {
     }
 
     /// All usable steps from the end of a state's edge.
-    pub(super) fn steps<'g>(&'g self, access: &'g Access, state: State) -> impl Iterator<Item = Step> + 'g {
+    pub(super) fn steps<'g>(&'g self, access: &'g Access, state: SearchState) -> impl Iterator<Item = GraphStep> + 'g {
         let edge = self.edge_of(state);
         let (within, inside) = (self.within(state), self.inside(state));
         let first = self.movements().first(edge);
@@ -202,7 +202,7 @@ impl Graph {
             let next = self.bans.after(within, movement.to)?;
             let (layer, toll) = self.enter(access, inside, edge, [movement.to])?;
             let cost = self.movement_cost(movement.kind).saturating_add(price).saturating_add(toll);
-            Some(Step { next: layer + self.state(movement.to, next), cost, passage: NO_PASSAGE })
+            Some(GraphStep { next: layer + self.state(movement.to, next), cost, passage: NO_PASSAGE })
         });
         let passages = self.movements().over(edge).filter_map(move |(place, passage)| {
             let price = price(access, access.passages.get(place), passage.to)?;
@@ -211,7 +211,7 @@ impl Graph {
             let driven = passage.through.iter().copied().chain([passage.to]);
             let (layer, toll) = self.enter(access, inside, edge, driven)?;
             let cost = self.passage_cost(passage).saturating_add(price).saturating_add(toll);
-            Some(Step { next: layer + self.state(passage.to, next), cost, passage: place as u32 })
+            Some(GraphStep { next: layer + self.state(passage.to, next), cost, passage: place as u32 })
         });
         movements.chain(passages)
     }

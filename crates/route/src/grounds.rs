@@ -4,16 +4,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::pieces::TurnPiece;
-use crate::corridor::{Area, AreaSpan, Corridor, Frame, FrameError};
+use crate::corridor::{AreaSpan, Corridor, Frame, FrameError, PlaneArea};
 
 /// A turn's area, and how far before and behind the turn's own stations it counts.
-pub(super) struct Ground {
-    area: Arc<Area>,
+pub(super) struct TurnArea {
+    area: Arc<PlaneArea>,
     before_m: f64,
     after_m: f64,
 }
 
-impl Ground {
+impl TurnArea {
     /// The area of a turn, in the route's frame.
     pub(super) fn of(piece: &TurnPiece, frame: Frame) -> Result<Option<Self>, FrameError> {
         let Some(span) = &piece.area else { return Ok(None) };
@@ -36,10 +36,10 @@ impl Ground {
     }
 }
 
-fn in_frame(area: &Area, own: Frame, frame: Frame) -> Result<Area, FrameError> {
+fn in_frame(area: &PlaneArea, own: Frame, frame: Frame) -> Result<PlaneArea, FrameError> {
     let moved = |ring: &Vec<[f64; 2]>| {
         let degrees = own.inverse(ring)?;
         frame.forward_degrees(degrees.into_iter().map(|[lon, lat]| (lon, lat)).collect())
     };
-    Ok(Area { rings: area.rings.iter().map(moved).collect::<Result<_, FrameError>>()? })
+    Ok(PlaneArea { rings: area.rings.iter().map(moved).collect::<Result<_, FrameError>>()? })
 }

@@ -8,7 +8,7 @@
 //! | --- | --- |
 //! | `speeds` | the cost of an edge |
 //! | `bans` | restrictions over ways, as an automaton |
-//! | `permits`, `stored` | what a vehicle may use |
+//! | `permits`, `database` | what a vehicle may use |
 //! | `roads`, `driver` | what planners share: the roads, and a vehicle with its permits |
 //! | `graph` | edges, movements and passages as a graph |
 //! | `drive` | the edges of a way, and the arcs of passages among them |
@@ -24,7 +24,7 @@
 //! | `obstacles` | what blocks a route, and on which way |
 //! | `conditions` | what has to hold on site so that a way is certified |
 //! | `conditional_search` | the way with the fewest and smallest conditions |
-//! | `beside` | the road beside a place, and why it may not be used |
+//! | `nearest_road` | the road beside a place, and why it may not be used |
 //! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
@@ -45,15 +45,16 @@ use netcert_store as store;
 
 mod assemble;
 mod bans;
-mod beside;
 mod best;
 mod blend;
 mod conditional_search;
 mod conditions;
+mod database;
 mod drive;
 mod driver;
 mod graph;
 mod grounds;
+mod nearest_road;
 mod obstacles;
 mod permits;
 mod pieces;
@@ -66,21 +67,21 @@ mod route;
 mod search;
 mod snap;
 mod speeds;
-mod stored;
 mod survey;
 mod through;
 mod title;
 mod turning;
 mod whole;
 
-pub use assemble::{AssemblyError, PartKind, RoutePart, RoutePath, Way, assemble, passes_over};
+pub use assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, passes_over};
 pub use bans::{Bans, Within};
-pub use beside::Beside;
 pub use conditional_search::Hopeless;
 pub use conditions::{Condition, ConditionAt, Conditional, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson};
+pub use database::NoDriver;
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
+pub use nearest_road::NearestRoad;
 pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnEnds, TurnPiece, Turns};
@@ -90,12 +91,11 @@ pub use relative::{Comparison, Peer, Standings};
 pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members};
 pub use roads::Roads;
 pub use route::{LimitedStretch, PartResult, Route};
-pub use search::{Found, Goal, SearchExtent, Start, search, search_over};
+pub use search::{FoundWay, Goal, SearchExtent, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper, foot};
 pub use speeds::{Measure, Speeds, SpeedsError};
-pub use stored::NoDriver;
 pub use survey::{
-    Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
+    Opens, Pairs, PlacePair, SURVEY_COLUMNS, SURVEY_SCOPE, Survey, SurveyLine, SurveyStep, survey_pairs, survey_region,
 };
 pub use title::{place, title};
 pub use turning::MadeTurns;

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::assemble::{AssemblyError, PartKind, Way};
+use super::assemble::{AssemblyError, DrivenWay, PartKind};
 use super::conditions::{Conditional, Fitter};
 use super::drive::{Drive, Join};
 use super::driver::Driver;
@@ -16,11 +16,11 @@ use super::obstacles::{self, BlockedWay, Obstacle, Refutation};
 use super::pieces::Turns;
 use super::roads::Roads;
 use super::route::Route;
-use super::search::{Found, Goal, Start, search_over};
+use super::search::{FoundWay, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use super::turning::MadeTurns;
-use super::whole::{Certified, Whole};
+use super::whole::{CertifiedWay, Whole};
 use crate::network::{EdgeNo, MovementKind, Network};
 use crate::stop::{Stop, Stopped};
 
@@ -161,7 +161,7 @@ impl Planner {
     }
 
     /// The way of least cost over the places, with the shares of its first and last edge.
-    pub(super) fn way(&self, access: &Access, snapped: &[Snapped]) -> Result<Option<(Found, f64, f64)>, Stopped> {
+    pub(super) fn way(&self, access: &Access, snapped: &[Snapped]) -> Result<Option<(FoundWay, f64, f64)>, Stopped> {
         let Some((from, places)) = snapped.split_first() else { return Ok(None) };
         let starts: Vec<Start> = from.on.iter().map(|on| Start::new(on.edge, on.share)).collect();
         let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
@@ -215,19 +215,19 @@ impl Planner {
     /// Certifies a way. Returns the route, if one passed, and the failures before it.
     fn on_any_paths(
         &mut self,
-        found: &Found,
+        found: &FoundWay,
         start: f64,
         end: f64,
         tries: usize,
     ) -> Result<(Option<Route>, Vec<Refutation>), Stopped> {
-        let way = Way { drive: &found.drive, start, end };
+        let way = DrivenWay { drive: &found.drive, start, end };
         let (certified, failed) = self.whole.on_any_paths(&way, tries, &self.stop)?;
         Ok((certified.map(|certified| self.route(found, start, end, certified)), failed))
     }
 
     /// The route on a way that was certified, from the share `start` of its first edge to the share `end` of its last.
-    pub(super) fn route(&self, found: &Found, start: f64, end: f64, certified: Certified) -> Route {
-        let Certified { path, certificate } = certified;
+    pub(super) fn route(&self, found: &FoundWay, start: f64, end: f64, certified: CertifiedWay) -> Route {
+        let CertifiedWay { path, certificate } = certified;
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
         let (drive, cost, vehicle_length_m) = (found.drive.clone(), found.cost, self.driver.model.vehicle.length_m);

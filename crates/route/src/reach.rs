@@ -3,7 +3,7 @@
 //! The graph and the restrictions are those of routes. Each edge and turn is certified by itself; whole routes are not. The
 //! same functions answer what would be reachable if one more edge were safe ([`with_edge`]).
 
-use super::graph::{Access, BARRED, Graph, State};
+use super::graph::{Access, BARRED, Graph, SearchState};
 use crate::network::{EdgeNo, MovementKind};
 
 /// The reachable edges.
@@ -28,9 +28,9 @@ pub struct Components {
 #[must_use]
 pub fn reach(graph: &Graph, access: &Access, starts: &[EdgeNo]) -> ReachableEdges {
     let usable = |edge: &&EdgeNo| access.edges.get(edge.index()).is_some_and(|&cost| cost != BARRED);
-    let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
-    let mut steps: Vec<(State, State)> = Vec::new();
-    let mut flood_ahead = |first: &[State]| {
+    let first: Vec<SearchState> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
+    let mut steps: Vec<(SearchState, SearchState)> = Vec::new();
+    let mut flood_ahead = |first: &[SearchState]| {
         steps.clear();
         flood(graph.states(), first, |state, visit| {
             for step in graph.steps(access, state) {
@@ -41,25 +41,25 @@ pub fn reach(graph: &Graph, access: &Access, starts: &[EdgeNo]) -> ReachableEdge
     };
     let seen = flood_ahead(&first);
     // The way back begins where the way there ends: that is a destination.
-    let rested = |states: &[bool]| -> Vec<State> {
+    let rested = |states: &[bool]| -> Vec<SearchState> {
         let states = states.iter().enumerate().filter(|(_, on)| **on);
-        states.map(|(state, _)| graph.after_stop(state as State)).collect()
+        states.map(|(state, _)| graph.after_stop(state as SearchState)).collect()
     };
     if !graph.ends_only().is_empty() {
         flood_ahead(&rested(&seen));
     }
     steps.sort_unstable();
-    let home: Vec<State> = first.iter().flat_map(|&state| graph.arrivals(state)).collect();
+    let home: Vec<SearchState> = first.iter().flat_map(|&state| graph.arrivals(state)).collect();
     let returning = flood(graph.states(), &home, |state, visit| {
         let from = steps.partition_point(|step| step.0 < state);
         steps[from..].iter().take_while(|step| step.0 == state).for_each(|step| visit(step.1));
     });
-    let back = |(state, &there): (usize, &bool)| there && returning[graph.after_stop(state as State) as usize];
+    let back = |(state, &there): (usize, &bool)| there && returning[graph.after_stop(state as SearchState) as usize];
     let returning: Vec<bool> = seen.iter().enumerate().map(back).collect();
     let edges = |states: &[bool]| {
         let mut edges = vec![false; graph.network().edges.len()];
         for (state, _) in states.iter().enumerate().filter(|(_, on)| **on) {
-            if let Some(edge) = edges.get_mut(graph.edge_of(state as State).index()) {
+            if let Some(edge) = edges.get_mut(graph.edge_of(state as SearchState).index()) {
                 *edge = true;
             }
         }
@@ -68,9 +68,13 @@ pub fn reach(graph: &Graph, access: &Access, starts: &[EdgeNo]) -> ReachableEdge
     ReachableEdges { there: edges(&seen), and_back: edges(&returning) }
 }
 
-fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn FnMut(State))) -> Vec<bool> {
+fn flood(
+    states: usize,
+    first: &[SearchState],
+    mut step: impl FnMut(SearchState, &mut dyn FnMut(SearchState)),
+) -> Vec<bool> {
     let mut seen = vec![false; states];
-    let mut open: Vec<State> = Vec::new();
+    let mut open: Vec<SearchState> = Vec::new();
     for &state in first {
         if !std::mem::replace(&mut seen[state as usize], true) {
             open.push(state);

@@ -11,7 +11,7 @@ use super::driver::Driver;
 use super::plan::Answer;
 use super::route::Route;
 use crate::network::EdgeNo;
-use crate::rows::{Relative, Standing};
+use crate::rows::{CertificateStanding, Relative};
 use crate::stet::{self, Model, SpanResult};
 use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnknownReason, Verdict};
@@ -20,13 +20,13 @@ use crate::verdict::{UnknownReason, Verdict};
 #[derive(Debug, Default)]
 pub struct Standings {
     /// One for each edge.
-    pub edges: Vec<Standing>,
+    pub edges: Vec<CertificateStanding>,
     /// By the first and last edge of a turn or passage.
-    pub turns: FxHashMap<(EdgeNo, EdgeNo), Standing>,
+    pub turns: FxHashMap<(EdgeNo, EdgeNo), CertificateStanding>,
 }
 
 impl Standings {
-    fn at(&self, at: PartKind) -> Option<Standing> {
+    fn at(&self, at: PartKind) -> Option<CertificateStanding> {
         match at {
             PartKind::Edge(edge) => self.edges.get(edge.index()).copied(),
             PartKind::Turn { from, to } => self.turns.get(&(from, to)).copied(),
@@ -55,8 +55,8 @@ pub struct Peer {
 }
 
 /// What a comparison takes from a certificate of a route. `verdict` is the verdict with law and map.
-fn standing(verdict: Verdict, result: &SpanResult) -> Standing {
-    Standing::computed(verdict, result.rsc_m, result.hinge_margin_rad, result.shrink)
+fn standing(verdict: Verdict, result: &SpanResult) -> CertificateStanding {
+    CertificateStanding::computed(verdict, result.rsc_m, result.hinge_margin_rad, result.shrink)
 }
 
 impl Peer {
@@ -77,10 +77,11 @@ impl Peer {
         }
         let options = &driver.permits.settings.stet;
         let certificate = stet::certify(&route.path.corridor, &self.model, options, stop)?;
-        let other = certificate.map_or(Standing::bare(Verdict::Unknown(UnknownReason::Geometry)), |certificate| {
-            let verdict = self.other.against(&route.path).unwrap_or_else(|| certificate.result.verdict());
-            standing(verdict, &certificate.result)
-        });
+        let other =
+            certificate.map_or(CertificateStanding::bare(Verdict::Unknown(UnknownReason::Geometry)), |certificate| {
+                let verdict = self.other.against(&route.path).unwrap_or_else(|| certificate.result.verdict());
+                standing(verdict, &certificate.result)
+            });
         let other = if route.path.corridor.areas.is_empty() { other } else { other.in_area() };
         Ok(Relative::between(own, other))
     }

@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::drive::Drive;
-use super::graph::{Access, BARRED, Graph, NO_PASSAGE, State};
+use super::graph::{Access, BARRED, Graph, NO_PASSAGE, SearchState};
 use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
 
@@ -21,7 +21,7 @@ pub struct Start {
     /// The cost so far.
     pub cost: u64,
     /// The state, if the vehicle is in the middle of forbidden sequences. `None` if it begins on the edge.
-    pub(super) state: Option<State>,
+    pub(super) state: Option<SearchState>,
 }
 
 impl Start {
@@ -43,7 +43,7 @@ pub struct Goal {
 
 /// A way from a start to a goal.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct FoundWay {
     /// Index of the start.
     pub start: usize,
     /// Cost of the way to the goal.
@@ -51,7 +51,7 @@ pub struct Found {
     /// The edges of the way, including those of start and goal.
     pub drive: Drive,
     /// The state at the goal.
-    pub(super) state: State,
+    pub(super) state: SearchState,
 }
 
 /// Number of states between two checks of `stop`, about half a millisecond.
@@ -79,7 +79,7 @@ pub fn search(
     goals: &[Goal],
     extent: SearchExtent,
     stop: &Stop,
-) -> Result<Vec<Option<Found>>, Stopped> {
+) -> Result<Vec<Option<FoundWay>>, Stopped> {
     let mut search = Search::new(graph, access, goals);
     for (i, start) in starts.iter().enumerate() {
         search.begin(i, start);
@@ -93,8 +93,8 @@ pub fn search(
 struct End {
     cost: u64,
     /// The state before the goal's edge, or [`NONE`] if the goal is on the start's edge.
-    before: State,
-    at: State,
+    before: SearchState,
+    at: SearchState,
     start: usize,
     /// The passage onto the goal's edge, or [`NO_PASSAGE`].
     passage: u32,
@@ -104,7 +104,7 @@ struct End {
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     cost: u64,
-    before: State,
+    before: SearchState,
     start: u32,
     passage: u32,
 }
@@ -116,7 +116,7 @@ struct Search<'g> {
     best: Vec<Option<End>>,
     /// By state.
     reached: Vec<Reached>,
-    queue: BinaryHeap<Reverse<(u64, State)>>,
+    queue: BinaryHeap<Reverse<(u64, SearchState)>>,
 }
 
 impl<'g> Search<'g> {
@@ -178,14 +178,14 @@ impl<'g> Search<'g> {
     }
 
     /// Takes a way to a state if it is cheaper than the known one. Among ways of equal cost the first one stays.
-    fn reach(&mut self, state: State, by: Reached) {
+    fn reach(&mut self, state: SearchState, by: Reached) {
         if by.cost < self.reached[state as usize].cost {
             self.reached[state as usize] = by;
             self.queue.push(Reverse((by.cost, state)));
         }
     }
 
-    fn found(&self, end: &End) -> Found {
+    fn found(&self, end: &End) -> FoundWay {
         let mut drive = Drive::default();
         let (mut state, mut before, mut passage) = (end.at, end.before, end.passage);
         loop {
@@ -204,7 +204,7 @@ impl<'g> Search<'g> {
         let count = drive.edges.len();
         drive.edges.reverse();
         drive.over = drive.over.into_iter().rev().map(|arcs| count - arcs.end..count - arcs.start).collect();
-        Found { start: end.start, cost: end.cost, drive, state: end.at }
+        FoundWay { start: end.start, cost: end.cost, drive, state: end.at }
     }
 }
 
@@ -226,7 +226,7 @@ pub fn search_over(
     starts: &[Start],
     places: &[Vec<Goal>],
     stop: &Stop,
-) -> Result<Option<Found>, Stopped> {
+) -> Result<Option<FoundWay>, Stopped> {
     let mut starts = starts.to_vec();
     let mut ways: Vec<Drive> = vec![Drive::default(); starts.len()];
     let mut first: Vec<usize> = (0..starts.len()).collect();
@@ -251,7 +251,7 @@ pub fn search_over(
         }
         if last {
             let best = next.into_iter().min_by_key(|(.., found)| found.cost);
-            return Ok(best.map(|(_, drive, start, found)| Found { start, drive, ..found }));
+            return Ok(best.map(|(_, drive, start, found)| FoundWay { start, drive, ..found }));
         }
         starts = next.iter().map(|(start, ..)| *start).collect();
         first = next.iter().map(|(_, _, first, _)| *first).collect();

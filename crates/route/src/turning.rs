@@ -7,7 +7,7 @@ use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::{EdgeNo, Movement};
 use crate::stet::{Options, SpanResult, certify_spans};
-use crate::turns::{LengthClass, Planner, TurnCorridors, TurnEdges, TurnPath, turn_on};
+use crate::turns::{LengthClass, TurnCorridors, TurnEdges, TurnPath, TurnPlanner, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The usual number of simple paths of a turn.
@@ -44,7 +44,7 @@ impl Turns for MadeTurns {
         let options = &strokes.settings().stet;
         let known = self.best(&made, options);
         let code = known.as_ref().map(|(path, _)| path.code);
-        let others = Planner::new(&made).best_seeds(&self.driver.model.vehicle, self.more);
+        let others = TurnPlanner::new(&made).best_seeds(&self.driver.model.vehicle, self.more);
         let others = others.into_iter().filter(|other| Some(other.code) != code).filter_map(|other| {
             let path = made.path(other.code)?;
             let result = self.certified(&path, options)?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use super::assemble::{AssemblyError, PartKind, RoutePart, RoutePath, Way, assemble, movement};
+use super::assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, movement};
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
@@ -33,7 +33,7 @@ pub(super) struct Whole {
 }
 
 /// A way that passed as a whole.
-pub(super) struct Certified {
+pub(super) struct CertifiedWay {
     /// The corridor.
     pub(super) path: RoutePath,
     /// Its certificate, which is safe.
@@ -91,10 +91,10 @@ impl Whole {
     /// failed certificates, and after the last path the pieces that could not be joined.
     pub(super) fn on_any_paths(
         &mut self,
-        way: &Way<'_>,
+        way: &DrivenWay<'_>,
         tries: usize,
         stop: &Stop,
-    ) -> Result<(Option<Certified>, Vec<Refutation>), Stopped> {
+    ) -> Result<(Option<CertifiedWay>, Vec<Refutation>), Stopped> {
         self.menu.begin();
         let mut failed: Vec<Refutation> = Vec::new();
         for strung in 1.. {
@@ -122,7 +122,7 @@ impl Whole {
     /// are chosen.
     pub(super) fn look(
         &mut self,
-        way: &Way<'_>,
+        way: &DrivenWay<'_>,
         choices: &mut Choices,
         stop: &Stop,
     ) -> Result<Result<Looked, Refutation>, Stopped> {
@@ -141,16 +141,16 @@ impl Whole {
     /// two of them overlap; then others are chosen.
     pub(super) fn prove(
         &mut self,
-        way: &Way<'_>,
+        way: &DrivenWay<'_>,
         choices: &Choices,
         stop: &Stop,
-    ) -> Result<Option<Certified>, Stopped> {
+    ) -> Result<Option<CertifiedWay>, Stopped> {
         self.menu.choose(choices);
         let Ok(path) = self.joined(way, stop)? else { return Ok(None) };
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
         let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
         let safe = certified.filter(|(certificate, _)| certificate.result.safe());
-        Ok(safe.map(|(certificate, _)| Certified { path, certificate }))
+        Ok(safe.map(|(certificate, _)| CertifiedWay { path, certificate }))
     }
 
     /// Chooses the next path of a turn of a way. Returns whether there is one.
@@ -171,7 +171,7 @@ impl Whole {
     }
 
     /// Joins the pieces of a way. If two turns overlap, their other paths are tried.
-    fn joined(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<RoutePath, Refutation>, Stopped> {
+    fn joined(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<RoutePath, Refutation>, Stopped> {
         let mut strung = 0;
         loop {
             strung += 1;
@@ -194,7 +194,7 @@ impl Whole {
         }
     }
 
-    fn certify(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<Certified, Refutation>, Stopped> {
+    fn certify(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
         let path = match self.joined(way, stop)? {
             Ok(path) => path,
             Err(refutation) => return Ok(Err(refutation)),
@@ -210,7 +210,7 @@ impl Whole {
         if !certificate.result.safe() {
             return Ok(Err(refuted(Some(&certificate))));
         }
-        Ok(Ok(Certified { path, certificate }))
+        Ok(Ok(CertifiedWay { path, certificate }))
     }
 }
 

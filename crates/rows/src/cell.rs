@@ -3,11 +3,11 @@
 use serde_json::Value;
 
 /// A column's name and the kind of its values.
-pub type Column = (&'static str, Kind);
+pub type Column = (&'static str, ColumnKind);
 
 /// The kind of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Whole numbers of up to 63 bits.
     Integer,
     /// Numbers.
@@ -20,7 +20,7 @@ pub enum Kind {
 
 /// A value of a column, or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // as in `Kind`
+#[allow(missing_docs)] // as in `ColumnKind`
 pub enum Cell<'r> {
     Integer(Option<i64>),
     Real(Option<f64>),

@@ -4,7 +4,7 @@ use crate::verdict::Verdict;
 use crate::words::{Named as _, verdict_words};
 use netcert_base::corridor::Side;
 
-use super::cell::Kind::{Integer, Real, Text};
+use super::cell::ColumnKind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 
 /// A certificate as a database stores it, in the units of the views.

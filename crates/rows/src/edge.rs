@@ -5,7 +5,7 @@ use crate::osm::facts::{Oneway, Permission, Policy, WidthSource};
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 
-use super::cell::Kind::{Integer, Real, Text};
+use super::cell::ColumnKind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
 use super::key::{EdgeKey, RoadName};

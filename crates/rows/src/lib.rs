@@ -14,11 +14,11 @@ mod certificate;
 mod counts;
 mod edge;
 mod key;
-mod made;
 mod map;
 mod measurement;
 mod plan;
 mod relative;
+mod results;
 mod rings;
 mod segment;
 mod set_key;
@@ -27,19 +27,21 @@ mod sides;
 mod turn;
 
 pub use bounds::Bounds;
-pub use cell::{Cell, Column, Kind};
+pub use cell::{Cell, Column, ColumnKind};
 pub use certificate::CertificateRow;
 pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, TurnCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
 pub use key::{EdgeKey, RoadName, TurnKey};
-pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, TurnCertificate, TurnMade, TurnNeed};
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;
 pub use netcert_roads::network::EdgeNo;
 pub use netcert_roads::turns::TurnNo;
 pub use plan::StoredPlan;
 pub use plan::unpack;
-pub use relative::{Relative, Standing};
+pub use relative::{CertificateStanding, Relative};
+pub use results::{
+    Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, TurnCertificate, TurnMade, TurnNeed,
+};
 pub use rings::Rings;
 pub use segment::SegmentRow;
 pub use set_key::SetKey;

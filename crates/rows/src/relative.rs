@@ -8,13 +8,13 @@ use netcert_base::leeway::known_m;
 
 use crate::verdict::{UnsafeReason, Verdict};
 
-use super::cell::Kind::{Flag, Real};
+use super::cell::ColumnKind::{Flag, Real};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
 
 /// What a comparison takes from one certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Standing {
+pub struct CertificateStanding {
     verdict: Verdict,
     /// The RSC rounded down, millimetres. `None` if there is none, or if the bounds do not close.
     rsc_mm: Option<i64>,
@@ -31,7 +31,7 @@ pub struct Standing {
 const ROUNDED_MM: i64 = 100;
 const ROUNDED_SHARE: i64 = 10;
 
-impl Standing {
+impl CertificateStanding {
     /// Of a stored certificate: the RSC in metres, in whole millimetres, the hinge margin in degrees, and the shrink in whole thousandths
     /// (`None`: 1).
     #[must_use]
@@ -114,7 +114,7 @@ impl Relative {
     /// more: this millimetre is deducted. Where the reference does not fit into the area of a junction, its RSC is rounded more
     /// coarsely, and a decimetre or a tenth of it is deducted.
     #[must_use]
-    pub fn between(vehicle: Standing, reference: Standing) -> Self {
+    pub fn between(vehicle: CertificateStanding, reference: CertificateStanding) -> Self {
         // Both are on the same road.
         let vehicle = if reference.in_area { vehicle.in_area() } else { vehicle };
         let own_mm = vehicle.comparable_mm(reference.shrink_milli);
@@ -124,13 +124,13 @@ impl Relative {
 
     /// Compares a vehicle with itself. The difference is 0: nothing is rounded.
     #[must_use]
-    pub fn to_itself(vehicle: Standing) -> Self {
+    pub fn to_itself(vehicle: CertificateStanding) -> Self {
         Self::of(vehicle.rsc_mm.map(|_| 0), [vehicle])
     }
 
     /// The comparison of these vehicles, whose difference is `relative_mm`.
-    fn of<const N: usize>(relative_mm: Option<i64>, vehicles: [Standing; N]) -> Self {
-        let by_room = vehicles.iter().all(Standing::by_room);
+    fn of<const N: usize>(relative_mm: Option<i64>, vehicles: [CertificateStanding; N]) -> Self {
+        let by_room = vehicles.iter().all(CertificateStanding::by_room);
         let as_reference = by_room && relative_mm.is_some_and(|mm| mm >= 0);
         Self { relative_m: relative_mm.map(|mm| mm as f64 / 1000.0), as_reference }
     }
@@ -149,11 +149,11 @@ mod tests {
 
     const WIDTH: Verdict = Verdict::Unsafe(UnsafeReason::Width);
 
-    fn standing(verdict: Verdict, rsc_m: f64) -> Standing {
-        Standing::stored(verdict, Some(rsc_m), Some(12.0), None)
+    fn standing(verdict: Verdict, rsc_m: f64) -> CertificateStanding {
+        CertificateStanding::stored(verdict, Some(rsc_m), Some(12.0), None)
     }
 
-    fn said(vehicle: Standing, reference: Standing) -> (Option<f64>, bool) {
+    fn said(vehicle: CertificateStanding, reference: CertificateStanding) -> (Option<f64>, bool) {
         let said = Relative::between(vehicle, reference);
         (said.relative_m, said.as_reference)
     }
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn a_vehicle_that_must_be_steered_more_exactly_is_not_compared() {
-        let at = |rsc_m, shrink| Standing::stored(Verdict::Safe, Some(rsc_m), Some(12.0), Some(shrink));
+        let at = |rsc_m, shrink| CertificateStanding::stored(Verdict::Safe, Some(rsc_m), Some(12.0), Some(shrink));
         assert_eq!(said(at(0.5, 0.367), at(0.1, 1.0)), (None, false));
         assert_eq!(said(at(0.5, 0.999), at(0.1, 1.0)), (None, false));
         // At the reference's smaller shrink the vehicle has at least this much.
@@ -205,13 +205,13 @@ mod tests {
         assert_eq!((own.relative_m, own.as_reference), (Some(0.0), true));
         let folded = Relative::to_itself(standing(Verdict::Unsafe(UnsafeReason::Articulation), 0.4));
         assert_eq!((folded.relative_m, folded.as_reference), (Some(0.0), false));
-        assert_eq!(Relative::to_itself(Standing::bare(WIDTH)), Relative::default());
+        assert_eq!(Relative::to_itself(CertificateStanding::bare(WIDTH)), Relative::default());
     }
 
     #[test]
     fn without_both_rscs_there_is_no_comparison() {
-        let (there, none) = (standing(Verdict::Safe, 1.0), Standing::bare(WIDTH));
-        let open = Standing::stored(WIDTH, Some(-1000.0), Some(-515.67), None);
+        let (there, none) = (standing(Verdict::Safe, 1.0), CertificateStanding::bare(WIDTH));
+        let open = CertificateStanding::stored(WIDTH, Some(-1000.0), Some(-515.67), None);
         for (vehicle, reference) in [(there, none), (none, there), (none, none), (there, open), (open, there)] {
             assert_eq!(said(vehicle, reference), (None, false));
         }
@@ -231,14 +231,17 @@ mod tests {
             assert_eq!(said(standing(Verdict::Safe, 2.0), standing(verdict, 0.5)), (Some(1.499), false), "{verdict:?}");
         }
         // Where the road is too narrow, the reason is `width`, even if a hinge fails as well.
-        let folds = Standing::stored(WIDTH, Some(-0.1), Some(-0.01), None);
+        let folds = CertificateStanding::stored(WIDTH, Some(-0.1), Some(-0.01), None);
         assert_eq!(said(folds, standing(WIDTH, -0.5)), (Some(0.399), false));
-        assert_eq!(said(standing(WIDTH, -0.1), Standing::stored(WIDTH, Some(-0.5), None, None)), (Some(0.399), false));
+        assert_eq!(
+            said(standing(WIDTH, -0.1), CertificateStanding::stored(WIDTH, Some(-0.5), None, None)),
+            (Some(0.399), false)
+        );
     }
 
     #[test]
     fn full_precision_is_rounded_down_like_a_stored_certificate() {
-        let computed = |rsc_m| Standing::computed(Verdict::Safe, Some(rsc_m), Some(0.1), 1.0);
+        let computed = |rsc_m| CertificateStanding::computed(Verdict::Safe, Some(rsc_m), Some(0.1), 1.0);
         assert_eq!(computed(0.5007), standing(Verdict::Safe, 0.5));
         assert_eq!(said(computed(0.5007), computed(0.4999)), (Some(0.0), true));
         assert_eq!(said(computed(0.5007), computed(0.5005)), (Some(-0.001), false));

@@ -7,7 +7,7 @@ use crate::words::Named as _;
 use netcert_roads::network::EdgeNo;
 use netcert_roads::turns::TurnNo;
 
-use super::cell::Kind::{Integer, Real, Text};
+use super::cell::ColumnKind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
 use super::key::TurnKey;

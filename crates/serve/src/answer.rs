@@ -13,7 +13,7 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 
-use super::ask::Ask;
+use super::ask::DecodedRequest;
 
 /// Shorter bodies are not compressed, bytes.
 const LEAST_COMPRESSED: usize = 600;
@@ -23,7 +23,7 @@ const LEVEL: u32 = 3;
 
 /// A finished body with its hash. The body is stored compressed if that makes it shorter.
 #[derive(Debug)]
-pub(super) struct Stored {
+pub(super) struct StoredAnswer {
     kind: &'static str,
     bytes: Vec<u8>,
     gzipped: bool,
@@ -40,7 +40,7 @@ pub(super) enum Keep {
     ForEver,
 }
 
-impl Stored {
+impl StoredAnswer {
     pub(super) fn new(kind: &'static str, body: Vec<u8>) -> Self {
         let hash = blake3::hash(&body).to_hex();
         let (plain_len, tag) = (body.len(), hash.as_str().chars().take(20).collect());
@@ -56,7 +56,7 @@ impl Stored {
     }
 
     /// The response to a request. It is `304 Not Modified` if the client has the answer already.
-    pub(super) fn respond(&self, ask: &Ask, keep: Keep) -> Response {
+    pub(super) fn respond(&self, ask: &DecodedRequest, keep: Keep) -> Response {
         let encoded = self.gzipped && ask.gzip;
         let tag = if encoded { format!("\"{}-gz\"", self.tag) } else { format!("\"{}\"", self.tag) };
         let fresh = ask.if_none_match.as_deref().is_some_and(|known| self.matches(known));
@@ -116,8 +116,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn ask(gzip: bool, if_none_match: Option<&str>) -> Ask {
-        let mut ask = Ask::default();
+    fn ask(gzip: bool, if_none_match: Option<&str>) -> DecodedRequest {
+        let mut ask = DecodedRequest::default();
         (ask.gzip, ask.if_none_match) = (gzip, if_none_match.map(str::to_owned));
         ask
     }
@@ -125,14 +125,14 @@ mod tests {
     #[test]
     fn what_was_compressed_comes_back() {
         let body: Vec<u8> = (0..5000_u32).map(|i| (i % 50) as u8).collect();
-        let stored = Stored::new("text/plain", body.clone());
+        let stored = StoredAnswer::new("text/plain", body.clone());
         assert!(stored.gzipped && stored.len() < body.len());
         assert_eq!(stored.plain(), body);
     }
 
     #[test]
     fn a_known_tag_in_either_encoding_means_not_modified() {
-        let stored = Stored::new("text/plain", vec![b'a'; 2000]);
+        let stored = StoredAnswer::new("text/plain", vec![b'a'; 2000]);
         let tag = |gzip| stored.respond(&ask(gzip, None), Keep::Ask).headers()["etag"].to_str().unwrap().to_owned();
         assert_ne!(tag(true), tag(false), "two encodings are two representations");
         for known in [tag(true), tag(false), format!("\"x\", W/{}", tag(true)), "*".to_owned()] {

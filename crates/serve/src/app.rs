@@ -4,21 +4,21 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use axum::response::{IntoResponse as _, Response};
 
-use super::answer::{Keep, Stored};
-use super::ask::{Ask, STATE};
+use super::answer::{Keep, StoredAnswer};
+use super::ask::{DecodedRequest, STATE};
 use super::cache::Cache;
 use super::lines;
-use super::older::Older;
-use super::options::Options;
+use super::older::OlderState;
+use super::options::ServerOptions;
 use super::problem::Problem;
-use super::region::{Identity, Region};
-use super::served::Served;
+use super::region::{Identity, RegionState};
+use super::state::ServedState;
 use super::work::Lane;
 
 /// The application.
 pub(super) struct App {
-    pub(super) options: Options,
-    served: RwLock<Arc<Served>>,
+    pub(super) options: ServerOptions,
+    served: RwLock<Arc<ServedState>>,
     /// Locked while a changed file is read, so that one request reads it and the others wait.
     reading: Mutex<()>,
     cache: Cache,
@@ -37,7 +37,7 @@ pub(super) enum Pace {
 }
 
 impl App {
-    pub(super) fn new(options: Options, served: Served) -> Self {
+    pub(super) fn new(options: ServerOptions, served: ServedState) -> Self {
         let limits = options.limits;
         let (quick, slow) = (limits.quick, limits.slow);
         Self {
@@ -52,7 +52,7 @@ impl App {
     }
 
     /// What is served of the current file. Reads the file if it has changed.
-    async fn served(self: &Arc<Self>) -> Result<Arc<Served>, Problem> {
+    async fn served(self: &Arc<Self>) -> Result<Arc<ServedState>, Problem> {
         if let Some(known) = self.unchanged()? {
             return Ok(known);
         }
@@ -64,9 +64,9 @@ impl App {
             }
             let known = Arc::clone(&app.served.read().unwrap_or_else(PoisonError::into_inner));
             let before = app.options.before.as_deref();
-            let older = before.map(|path| Older::open(path, known.older.as_ref())).transpose()?;
-            let region = Region::open(&app.options.db)?.holding(app.options.limits.held_edges);
-            let served = Arc::new(Served::new(region, older));
+            let older = before.map(|path| OlderState::open(path, known.older.as_ref())).transpose()?;
+            let region = RegionState::open(&app.options.db)?.holding(app.options.limits.held_edges);
+            let served = Arc::new(ServedState::new(region, older));
             *app.served.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&served);
             lines::read_anew(&app.options.db);
             Ok(served)
@@ -75,7 +75,7 @@ impl App {
     }
 
     /// What is served, if neither the file nor the older one has changed since they were read.
-    fn unchanged(&self) -> Result<Option<Arc<Served>>, Problem> {
+    fn unchanged(&self) -> Result<Option<Arc<ServedState>>, Problem> {
         let known = Arc::clone(&self.served.read().unwrap_or_else(PoisonError::into_inner));
         let same = Identity::of(&self.options.db)? == known.region.identity;
         let older = self.options.before.as_deref().map(|path| Identity::of(path).ok());
@@ -107,9 +107,9 @@ impl App {
     /// Answers from the cache, or does the work and caches the answer.
     pub(super) async fn answer(
         self: &Arc<Self>,
-        ask: Ask,
+        ask: DecodedRequest,
         pace: Pace,
-        work: impl FnOnce(&Served, &Ask) -> Result<Stored, Problem> + Send + 'static,
+        work: impl FnOnce(&ServedState, &DecodedRequest) -> Result<StoredAnswer, Problem> + Send + 'static,
     ) -> Response {
         match self.try_answer(&ask, pace, work).await {
             Ok((stored, keep)) => stored.respond(&ask, keep),
@@ -120,8 +120,8 @@ impl App {
     /// Changes the database, one change after the other. A change that was begun is finished, whoever goes away.
     pub(super) async fn change(
         self: &Arc<Self>,
-        ask: Ask,
-        work: impl FnOnce(&Options, &Ask) -> Result<Stored, Problem> + Send + 'static,
+        ask: DecodedRequest,
+        work: impl FnOnce(&ServerOptions, &DecodedRequest) -> Result<StoredAnswer, Problem> + Send + 'static,
     ) -> Response {
         let (app, asked) = (Arc::clone(self), ask.clone());
         match self.changes.run(move |_| work(&app.options, &asked)).await {
@@ -132,10 +132,10 @@ impl App {
 
     async fn try_answer(
         self: &Arc<Self>,
-        ask: &Ask,
+        ask: &DecodedRequest,
         pace: Pace,
-        work: impl FnOnce(&Served, &Ask) -> Result<Stored, Problem> + Send + 'static,
-    ) -> Result<(Arc<Stored>, Keep), Problem> {
+        work: impl FnOnce(&ServedState, &DecodedRequest) -> Result<StoredAnswer, Problem> + Send + 'static,
+    ) -> Result<(Arc<StoredAnswer>, Keep), Problem> {
         let served = self.served().await?;
         let keep = if ask.parameter(STATE) == Some(&served.state) { Keep::ForEver } else { Keep::Ask };
         let key = format!("{} {}", served.state, ask.key());

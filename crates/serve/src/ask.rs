@@ -24,7 +24,7 @@ pub(super) const STATE: &str = "state";
 
 /// A decoded request.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Ask {
+pub(super) struct DecodedRequest {
     path: String,
     names: Vec<(String, String)>,
     parameters: Vec<(String, String)>,
@@ -34,7 +34,7 @@ pub(super) struct Ask {
     pub(super) stop: Stop,
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for Ask {
+impl<S: Send + Sync> FromRequestParts<S> for DecodedRequest {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
@@ -90,7 +90,7 @@ pub(super) fn shortened(text: &str) -> String {
     short
 }
 
-impl Ask {
+impl DecodedRequest {
     /// Refuses parameters that `known` lacks, and parameters that are given twice. An entry of `known` that ends in `*`
     /// may be given several times.
     pub(super) fn only(&self, known: &[&str]) -> Result<(), Problem> {
@@ -204,8 +204,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn ask(path: &str, query: &str) -> Ask {
-        Ask { path: path.to_owned(), parameters: read_query(query).unwrap(), ..Ask::default() }
+    fn ask(path: &str, query: &str) -> DecodedRequest {
+        DecodedRequest { path: path.to_owned(), parameters: read_query(query).unwrap(), ..DecodedRequest::default() }
     }
 
     #[test]

@@ -9,13 +9,13 @@ use axum::extract::FromRequestParts as _;
 use axum::extract::Request;
 use axum::response::{IntoResponse as _, Response};
 
-use super::answer::{Keep, Stored};
-use super::ask::{Ask, shortened};
+use super::answer::{Keep, StoredAnswer};
+use super::ask::{DecodedRequest, shortened};
 use super::problem::Problem;
 
 include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-type Table = Vec<(&'static str, OnceLock<Arc<Stored>>)>;
+type Table = Vec<(&'static str, OnceLock<Arc<StoredAnswer>>)>;
 
 /// Answers with a file of the page.
 pub(super) async fn asset(request: Request) -> Response {
@@ -27,10 +27,10 @@ pub(super) async fn asset(request: Request) -> Response {
     let kept = KEPT.get_or_init(|| PAGE.iter().map(|(path, _)| (*path, OnceLock::new())).collect());
     let found = PAGE.iter().zip(kept).find(|((name, _), _)| *name == path);
     let Some(((name, bytes), (_, stored))) = found else { return nothing(&request) };
-    let stored = stored.get_or_init(|| Arc::new(Stored::new(kind(name), bytes.to_vec())));
+    let stored = stored.get_or_init(|| Arc::new(StoredAnswer::new(kind(name), bytes.to_vec())));
     let keep = if name.starts_with("/assets/") { Keep::ForEver } else { Keep::Ask };
     let (mut parts, _) = request.into_parts();
-    match Ask::from_request_parts(&mut parts, &()).await {
+    match DecodedRequest::from_request_parts(&mut parts, &()).await {
         Ok(ask) => stored.respond(&ask, keep),
         Err(problem) => problem.into_response(),
     }

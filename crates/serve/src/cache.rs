@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::answer::Stored;
+use super::answer::StoredAnswer;
 
 /// Bytes that an entry takes beside its body and key: three map nodes and the headers of their strings.
 const OVERHEAD: usize = 300;
@@ -19,7 +19,7 @@ pub(super) struct Cache {
 
 #[derive(Debug, Default)]
 struct Inner {
-    entries: HashMap<Arc<str>, (u64, Arc<Stored>)>,
+    entries: HashMap<Arc<str>, (u64, Arc<StoredAnswer>)>,
     /// Keys by the clock of their last use.
     order: BTreeMap<u64, Arc<str>>,
     clock: u64,
@@ -31,7 +31,7 @@ impl Cache {
         Self { most_bytes, inner: Mutex::default() }
     }
 
-    pub(super) fn get(&self, key: &str) -> Option<Arc<Stored>> {
+    pub(super) fn get(&self, key: &str) -> Option<Arc<StoredAnswer>> {
         let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
         inner.clock += 1;
         let now = inner.clock;
@@ -45,7 +45,7 @@ impl Cache {
     }
 
     /// Adds an answer. An answer of more than an eighth of the bound is not kept.
-    pub(super) fn put(&self, key: &str, stored: Arc<Stored>) {
+    pub(super) fn put(&self, key: &str, stored: Arc<StoredAnswer>) {
         let size = size(key, &stored);
         if size > self.most_bytes / 8 {
             return;
@@ -80,7 +80,7 @@ impl Inner {
     }
 }
 
-fn size(key: &str, stored: &Stored) -> usize {
+fn size(key: &str, stored: &StoredAnswer) -> usize {
     stored.len() + key.len() + OVERHEAD
 }
 
@@ -89,14 +89,14 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn stored(bytes: usize) -> Arc<Stored> {
+    fn stored(bytes: usize) -> Arc<StoredAnswer> {
         // Noise (splitmix64), which does not compress.
         let noise = |i: usize| {
             let x = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
             ((x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb) >> 56) as u8
         };
-        Arc::new(Stored::new("text/plain", (0..bytes).map(noise).collect()))
+        Arc::new(StoredAnswer::new("text/plain", (0..bytes).map(noise).collect()))
     }
 
     #[test]

@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 
 use super::memo::Recent;
 use super::problem::Problem;
-use super::region::Certified;
-use crate::diff::{self, Changed, RoadChange, Row, Sums};
+use super::region::CertifiedVehicle;
+use crate::diff::{self, ChangeRow, Changed, RoadChange, Sums};
 use crate::network::length_m;
 use crate::rows::{Bounds, DrivingSides, EdgeRow, SetKey, TurnRow};
 use crate::stop::Stop;
@@ -34,7 +34,7 @@ pub(super) struct Kept {
 }
 
 /// The changes of one set.
-pub(super) struct Changes {
+pub(super) struct SetChanges {
     /// Edges, kilometres and turns by change.
     pub(super) sums: Vec<Value>,
     /// The roads with the longest changes.
@@ -50,7 +50,7 @@ pub(super) struct Changes {
 }
 
 /// The last comparisons with the older database, by vehicle and policy.
-pub(super) struct Comparisons(Recent<Changes>);
+pub(super) struct Comparisons(Recent<SetChanges>);
 
 impl Default for Comparisons {
     fn default() -> Self {
@@ -62,18 +62,18 @@ impl Comparisons {
     /// What changed from the set of the older database to the same set of the newer one. The first call compares them.
     pub(super) fn of(
         &self,
-        before: &Certified<'_>,
-        after: &Certified<'_>,
+        before: &CertifiedVehicle<'_>,
+        after: &CertifiedVehicle<'_>,
         stop: &Stop,
-    ) -> Result<Arc<Changes>, Problem> {
+    ) -> Result<Arc<SetChanges>, Problem> {
         let key = format!("{} {}", after.vehicle.id, after.set.policy.name());
-        self.0.get(&key, || Changes::between(before, after, stop))
+        self.0.get(&key, || SetChanges::between(before, after, stop))
     }
 }
 
-impl Changes {
+impl SetChanges {
     /// Compares a set with that of the older database.
-    fn between(before: &Certified<'_>, after: &Certified<'_>, stop: &Stop) -> Result<Self, Problem> {
+    fn between(before: &CertifiedVehicle<'_>, after: &CertifiedVehicle<'_>, stop: &Stop) -> Result<Self, Problem> {
         let (old, new) = (before.region, after.region);
         let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
         let mut gathered = Gathered {
@@ -142,19 +142,19 @@ impl Gathered<'_> {
         let length_m = changed.row().map_or(0.0, |row| row.length_m);
         let own = &self.sides[usize::from(changed.after.is_some())];
         let left = changed.row().and_then(|row| own.left(row.edge.index));
-        self.keep(Row::of_edge(self.set, changed), length_m, changed.two_way, left);
+        self.keep(ChangeRow::of_edge(self.set, changed), length_m, changed.two_way, left);
         Ok(())
     }
 
     fn turn(&mut self, changed: &Changed<TurnRow>) -> Result<(), StoreError> {
         self.sums.add_turn(changed);
         let length_m = changed.row().map_or(0.0, |row| length_m(row.line.iter().copied()));
-        self.keep(Row::of_turn(self.set, changed), length_m, changed.two_way, None);
+        self.keep(ChangeRow::of_turn(self.set, changed), length_m, changed.two_way, None);
         Ok(())
     }
 
     /// `left` is the driving side, if the region has both.
-    fn keep(&mut self, row: Option<Row>, length_m: f64, two_way: bool, left: Option<bool>) {
+    fn keep(&mut self, row: Option<ChangeRow>, length_m: f64, two_way: bool, left: Option<bool>) {
         let Some(mut row) = row else { return };
         let Some(bounds) = Bounds::around(row.line.iter().copied()) else { return };
         let id = row.members["id"].as_i64().unwrap_or_default();
@@ -170,13 +170,13 @@ impl Gathered<'_> {
         self.longest.add(Kept { bounds, length_m, id, feature });
     }
 
-    fn finish(mut self, notes: Vec<&'static str>) -> Changes {
+    fn finish(mut self, notes: Vec<&'static str>) -> SetChanges {
         self.longest.shorten();
         let Longest { kept, all } = self.longest;
         let sum = |(name, sum): (&&str, &diff::Sum)| json!({"change": name, "edges": sum.edges, "km": km(sum.length_m), "turns": sum.turns});
         let mut roads = self.sums.roads();
         roads.sort_by(|a, b| b.on_road.sum.length_m.total_cmp(&a.on_road.sum.length_m));
-        Changes {
+        SetChanges {
             sums: self.sums.by_name().iter().map(sum).collect(),
             roads: roads.into_iter().take(MOST_ROADS).map(road).collect(),
             notes,

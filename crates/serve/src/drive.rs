@@ -8,7 +8,7 @@
 use serde_json::{Value, json};
 
 use crate::corridor::{Corridor, Frame, FrameError};
-use crate::explain::Ride;
+use crate::explain::NominalRide;
 use crate::route::Route;
 use crate::speed_profile::SpeedProfile;
 use crate::stet::motion::Pose;
@@ -37,7 +37,7 @@ pub(super) enum Detail {
 pub(super) fn members(model: &Model, route: &Route, detail: Detail) -> Result<Value, FrameError> {
     let certificate = &route.certificate;
     let corridor = &route.path.corridor;
-    let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
+    let ride = NominalRide::new(corridor, &certificate.plan, &model.vehicle);
     let stations = stations(corridor, &ride);
     let plan: Vec<[f64; 2]> = stations.iter().filter_map(|&k| certificate.plan.get(k).copied()).collect();
     let line = degrees(route.path.frame, &plan)?;
@@ -76,7 +76,7 @@ fn leeway(route: &Route) -> Value {
 }
 
 /// The stations at which a moment is kept.
-fn stations(corridor: &Corridor, ride: &Ride) -> Vec<usize> {
+fn stations(corridor: &Corridor, ride: &NominalRide) -> Vec<usize> {
     let mut slack = 1.0;
     loop {
         let kept = stations_with(corridor, ride, slack);
@@ -87,7 +87,7 @@ fn stations(corridor: &Corridor, ride: &Ride) -> Vec<usize> {
     }
 }
 
-fn stations_with(corridor: &Corridor, ride: &Ride, slack: f64) -> Vec<usize> {
+fn stations_with(corridor: &Corridor, ride: &NominalRide, slack: f64) -> Vec<usize> {
     let Some(last) = corridor.len().min(ride.len()).checked_sub(1) else { return Vec::new() };
     let mut kept = vec![0];
     let (mut from, mut before) = (0, ride.at(0.0));
@@ -108,7 +108,7 @@ fn turn(a: &Pose, b: &Pose) -> f64 {
     (ax * by - ay * bx).atan2(ax * bx + ay * by).abs()
 }
 
-fn moments(model: &Model, route: &Route, ride: &Ride, stations: &[usize]) -> Result<Value, FrameError> {
+fn moments(model: &Model, route: &Route, ride: &NominalRide, stations: &[usize]) -> Result<Value, FrameError> {
     let (corridor, frame) = (&route.path.corridor, route.path.frame);
     let times = SpeedProfile::default().times_s(corridor);
     let pick = |column: &[f64], parts: f64| -> Vec<f64> {

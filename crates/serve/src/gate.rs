@@ -14,8 +14,8 @@ use axum::response::{IntoResponse as _, Response};
 
 use super::app::App;
 use super::editing;
-use super::lines::{self, Refused};
-use super::options::Options;
+use super::lines::{self, RefusalReason};
+use super::options::ServerOptions;
 use super::problem::Problem;
 
 /// The greatest length of path and query together, bytes.
@@ -28,7 +28,7 @@ pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Ne
         Some(problem) => problem.into_response(),
         None => next.run(request).await,
     };
-    if let Some(refused) = response.extensions().get::<Refused>() {
+    if let Some(refused) = response.extensions().get::<RefusalReason>() {
         lines::refused(&method, &target, refused);
     }
     let headers = response.headers_mut();
@@ -50,7 +50,7 @@ const FIXED_HEADERS: [(HeaderName, &str); 5] = [
 ];
 
 /// The policy allows content of this server only, and nothing inline. MapLibre passes images as blobs.
-fn content_security_policy(options: &Options) -> String {
+fn content_security_policy(options: &ServerOptions) -> String {
     let map = options.base_map.as_ref().map_or(String::new(), |map| format!(" {}", map.origin));
     format!(
         "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; \
@@ -59,7 +59,7 @@ fn content_security_policy(options: &Options) -> String {
     )
 }
 
-fn refusal(request: &Request, options: &Options) -> Option<Problem> {
+fn refusal(request: &Request, options: &ServerOptions) -> Option<Problem> {
     let change = editing::is_change(request, &options.editing);
     if !change && ![Method::GET, Method::HEAD].contains(request.method()) {
         let detail = "this server only reads here: GET and HEAD";
@@ -91,7 +91,7 @@ fn refusal(request: &Request, options: &Options) -> Option<Problem> {
 }
 
 /// Whether a `Host` is a loopback name or the server's own address, with any port.
-fn is_own(host: &str, options: &Options) -> bool {
+fn is_own(host: &str, options: &ServerOptions) -> bool {
     let (name, port) = match host.rsplit_once(':') {
         Some((name, port)) if !port.ends_with(']') => (name, port),
         _ => (host, ""),
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn only_loopback_names_are_ones_own() {
-        let options = Options {
+        let options = ServerOptions {
             db: PathBuf::new(),
             before: None,
             addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),

@@ -17,7 +17,7 @@
 //! | `answer`, `cache` | entity tags, compression, conditional requests; the cache of answers |
 //! | `problem` | errors, as problem+json |
 //! | `app`, `work` | the state that requests share; lanes for work that blocks |
-//! | `served` | what requests are answered from: the region, the older database, and the last results of long work |
+//! | `state` | what requests are answered from: the region, the older database, and the last results of long work |
 //! | `region`, `roads` | one state of the database file; the network in memory |
 //! | `older`, `changes` | the older database beside it; what changed since then |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
@@ -32,7 +32,7 @@
 //! 1. `options`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
 //! 2. `roads`, `search` and `region` read one file.
 //! 3. `older`, `changes`, `planning`, `drive` and `tiles` make results from regions. Each defines how many of its results are kept.
-//! 4. `api` answers from the values that an endpoint needs. `served` puts these values together.
+//! 4. `api` answers from the values that an endpoint needs. `state` puts these values together.
 //! 5. `app`, `gate`, `assets`, `routes` and `run` connect requests to them.
 
 use netcert_base::{speed_profile, stop, vehicle, verdict, words};
@@ -70,9 +70,9 @@ mod roads;
 mod routes;
 mod run;
 mod search;
-mod served;
+mod state;
 mod tiles;
 mod work;
 
-pub use options::{BaseMap, Editing, LaneLimits, Limits, Options};
+pub use options::{BaseMap, Editing, LaneLimits, Limits, ServerOptions};
 pub use run::{ServeError, Server};

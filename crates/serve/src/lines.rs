@@ -12,10 +12,10 @@ const LONGEST: usize = 300;
 
 /// The reason of a refusal. The response carries it as an extension beside its body.
 #[derive(Debug, Clone)]
-pub(super) struct Refused(pub(super) String);
+pub(super) struct RefusalReason(pub(super) String);
 
 /// Logs a refused request.
-pub(super) fn refused(method: &Method, target: &Uri, refused: &Refused) {
+pub(super) fn refused(method: &Method, target: &Uri, refused: &RefusalReason) {
     log::warn!(target: TARGET, "{}", line(&refusal(method, target, refused)));
 }
 
@@ -24,7 +24,7 @@ pub(super) fn read_anew(db: &Path) {
     log::info!(target: TARGET, "{}", line(&format!("{}: it has changed; read anew", db.display())));
 }
 
-fn refusal(method: &Method, target: &Uri, Refused(why): &Refused) -> String {
+fn refusal(method: &Method, target: &Uri, RefusalReason(why): &RefusalReason) -> String {
     let target = target.path_and_query().map_or("", |target| target.as_str());
     format!("{} {}: {}", cut(method.as_str()), cut(target), cut(why))
 }
@@ -68,7 +68,7 @@ mod tests {
     fn a_line_is_bounded() {
         let target = format!("/{}", "é".repeat(100_000).escape_unicode());
         let (target, why) =
-            (target.replace(['\\', '{', '}'], "-").parse().unwrap_or_default(), Refused("é".repeat(9999)));
+            (target.replace(['\\', '{', '}'], "-").parse().unwrap_or_default(), RefusalReason("é".repeat(9999)));
         assert!(refusal(&Method::GET, &target, &why).chars().count() < 2 * LONGEST + 20);
     }
 }

@@ -9,23 +9,23 @@ use std::sync::Arc;
 use axum::http::StatusCode;
 
 use super::problem::Problem;
-use super::region::{Identity, Region};
+use super::region::{Identity, RegionState};
 use crate::store::{CertifiedSet, StoreError};
 
 /// A state of the older database, or of its absence.
-pub(super) struct Older {
+pub(super) struct OlderState {
     /// `None` if there was no such file.
     pub(super) identity: Option<Identity>,
-    region: Result<Arc<Region>, Problem>,
+    region: Result<Arc<RegionState>, Problem>,
 }
 
-impl From<Region> for Older {
-    fn from(region: Region) -> Self {
+impl From<RegionState> for OlderState {
+    fn from(region: RegionState) -> Self {
         Self { identity: Some(region.identity.clone()), region: Ok(Arc::new(region)) }
     }
 }
 
-impl Older {
+impl OlderState {
     /// Opens the file. `known` is its last state, which is taken over if the file has not changed.
     ///
     /// # Errors
@@ -35,7 +35,7 @@ impl Older {
         if let Some(known) = known.filter(|known| known.identity == identity) {
             return Ok(Self { identity, region: known.region.clone() });
         }
-        match Region::open(path) {
+        match RegionState::open(path) {
             Ok(region) => Ok(region.into()),
             Err(error @ StoreError::Busy(_)) => Err(error),
             Err(error) => Ok(Self { identity, region: Err(unreadable(&error)) }),
@@ -43,7 +43,7 @@ impl Older {
     }
 
     /// The older database.
-    pub(super) fn region(&self) -> Result<&Arc<Region>, Problem> {
+    pub(super) fn region(&self) -> Result<&Arc<RegionState>, Problem> {
         self.region.as_ref().map_err(Problem::clone)
     }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// The options of the server.
 #[derive(Clone)]
-pub struct Options {
+pub struct ServerOptions {
     /// The database.
     pub db: PathBuf,
     /// An older database, whose differences from `db` the server tells.

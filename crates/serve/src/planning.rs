@@ -8,7 +8,7 @@ use std::sync::{Arc, mpsc};
 use super::drive::{self, Detail};
 use super::memo::Recent;
 use super::problem::Problem;
-use super::region::{Certified, Region};
+use super::region::{CertifiedVehicle, RegionState};
 use crate::picture::{self, SheetStyle, Units};
 use crate::route::{
     self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, SnapError, Speeds, Unanswered,
@@ -31,7 +31,7 @@ const MOST_BESIDE_M: f64 = 500.0;
 
 /// A question, and the number of drives wanted in the answer.
 #[derive(Debug, Clone)]
-pub(super) struct Ride {
+pub(super) struct RouteQuestion {
     pub(super) question: Question,
     /// Number of routes, from the best on, whose drive is wanted.
     pub(super) drives: usize,
@@ -43,7 +43,7 @@ pub(super) struct Ride {
 
 /// An answer, and the sheets of its route under conditions, if it has one.
 #[derive(Debug)]
-pub(super) struct Planned {
+pub(super) struct PlannedAnswer {
     pub(super) members: Value,
     pub(super) sheets: Option<Sheets>,
 }
@@ -61,11 +61,11 @@ pub(super) struct Sheets {
 /// The address of the style sheet of [`Sheets::html`].
 pub(super) const SHEET_STYLE_AT: &str = "/api/sheet.css";
 
-type Reply = mpsc::Sender<Result<Planned, Problem>>;
+type Reply = mpsc::Sender<Result<PlannedAnswer, Problem>>;
 
 /// The sending end of a planner's questions.
 pub(super) struct Router {
-    questions: mpsc::SyncSender<(Ride, Reply)>,
+    questions: mpsc::SyncSender<(RouteQuestion, Reply)>,
 }
 
 /// The last planners and their last answers.
@@ -73,7 +73,7 @@ pub(super) struct Planners {
     /// By vehicle, policy and measure.
     pub(super) routers: Recent<Router>,
     /// By the whole question.
-    pub(super) planned: Recent<Planned>,
+    pub(super) planned: Recent<PlannedAnswer>,
 }
 
 impl Default for Planners {
@@ -92,7 +92,11 @@ struct PlannerThread {
 
 impl Router {
     /// Reads the permits of the vehicle and starts the planner's thread.
-    pub(super) fn start(region: &Region, certified: &Certified<'_>, measure: Measure) -> Result<Self, Problem> {
+    pub(super) fn start(
+        region: &RegionState,
+        certified: &CertifiedVehicle<'_>,
+        measure: Measure,
+    ) -> Result<Self, Problem> {
         let roads = Arc::clone(&region.roads()?.roads);
         let driver =
             region.read(|database| match Driver::stored(database, &roads, certified.vehicle, certified.set) {
@@ -109,7 +113,7 @@ impl Router {
     }
 
     /// Asks the planner and waits for the answer. `None` means that the thread has ended, which is a fault.
-    pub(super) fn ask(&self, ride: Ride) -> Option<Result<Planned, Problem>> {
+    pub(super) fn ask(&self, ride: RouteQuestion) -> Option<Result<PlannedAnswer, Problem>> {
         let (reply, answer) = mpsc::channel();
         self.questions.send((ride, reply)).ok()?;
         answer.recv().ok()
@@ -117,7 +121,7 @@ impl Router {
 }
 
 impl PlannerThread {
-    fn serve(&self, asked: &mpsc::Receiver<(Ride, Reply)>) {
+    fn serve(&self, asked: &mpsc::Receiver<(RouteQuestion, Reply)>) {
         loop {
             let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure);
             for _ in 0..ANSWERS {
@@ -128,7 +132,7 @@ impl PlannerThread {
         }
     }
 
-    fn answer(&self, planner: &mut Planner, ride: &Ride) -> Result<Planned, Problem> {
+    fn answer(&self, planner: &mut Planner, ride: &RouteQuestion) -> Result<PlannedAnswer, Problem> {
         let answer = match ride.conditions {
             true => planner.best_answer(&ride.question, &ride.stop, || ()),
             false => planner.answer(&ride.question, &ride.stop),
@@ -160,11 +164,11 @@ impl PlannerThread {
         members["policy"] = json!(self.driver.permits.settings.policy.name());
         ids_as_text(&mut members);
         let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
-        Ok(Planned { members, sheets })
+        Ok(PlannedAnswer { members, sheets })
     }
 
     /// Which place is too far from a road that may be used, the nearest such road, and why the road beside the place is none.
-    fn no_road(&self, planner: &Planner, ride: &Ride, error: &SnapError) -> Problem {
+    fn no_road(&self, planner: &Planner, ride: &RouteQuestion, error: &SnapError) -> Problem {
         let (place, nearest) = match *error {
             SnapError::TooFar { place, nearest, distance_m, .. } => (place, Some((nearest, distance_m))),
             SnapError::Nothing { place } => (place, None),

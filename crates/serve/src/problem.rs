@@ -4,7 +4,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
 
-use super::lines::Refused;
+use super::lines::RefusalReason;
 use crate::stop::Stopped;
 use crate::store::StoreError;
 
@@ -146,7 +146,12 @@ impl IntoResponse for Problem {
             body[name] = member;
         }
         let mut response = (self.status, body.to_string()).into_response();
-        response.extensions_mut().insert(Refused(format!("{} {}: {}", self.status.as_u16(), self.title, self.detail)));
+        response.extensions_mut().insert(RefusalReason(format!(
+            "{} {}: {}",
+            self.status.as_u16(),
+            self.title,
+            self.detail
+        )));
         let headers = response.headers_mut();
         headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));

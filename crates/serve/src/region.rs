@@ -62,15 +62,15 @@ impl Identity {
 }
 
 /// A vehicle with its set of certificates under a policy, and the settings of that set.
-pub(super) struct Certified<'r> {
-    pub(super) region: &'r Region,
+pub(super) struct CertifiedVehicle<'r> {
+    pub(super) region: &'r RegionState,
     pub(super) vehicle: &'r Vehicle,
     pub(super) set: &'r CertifiedSet,
     pub(super) settings: Settings,
 }
 
 /// A state of the database.
-pub(super) struct Region {
+pub(super) struct RegionState {
     path: PathBuf,
     pub(super) identity: Identity,
     /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
@@ -96,7 +96,7 @@ pub(super) struct Region {
     numbers: Recent<Vec<MapNumbers>>,
 }
 
-impl Region {
+impl RegionState {
     /// Opens the file and reads the facts of the whole file.
     pub(super) fn open(path: &Path) -> Result<Self, StoreError> {
         let identity = Identity::of(path)?;
@@ -270,10 +270,10 @@ impl Region {
     }
 
     /// The vehicle's set under this policy. The error names the policies that the vehicle is certified under.
-    pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<Certified<'_>, Problem> {
+    pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<CertifiedVehicle<'_>, Problem> {
         let vehicle = self.vehicle(id)?;
         if let Some(set) = self.sets.iter().find(|set| set.vehicle_id == id && set.policy == policy) {
-            return Ok(Certified { region: self, vehicle, set, settings: set.settings()? });
+            return Ok(CertifiedVehicle { region: self, vehicle, set, settings: set.settings()? });
         }
         let policies = self.policies(id);
         let names: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
@@ -294,7 +294,7 @@ impl Region {
 
 /// The connections are dropped on a thread of their own. Each holds a small tokio runtime, and such a runtime must not end
 /// on a thread of the server's runtime.
-impl Drop for Region {
+impl Drop for RegionState {
     fn drop(&mut self) {
         let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
         if !idle.is_empty() {

@@ -8,18 +8,18 @@ use axum::response::Response;
 use axum::routing::{delete, get, post};
 use axum::{Router, middleware};
 
-use super::answer::Stored;
+use super::answer::StoredAnswer;
 use super::api;
 use super::app::{App, Pace};
-use super::ask::Ask;
+use super::ask::DecodedRequest;
 use super::assets;
 use super::editing;
 use super::gate::gate;
 use super::problem::Problem;
-use super::served::Served;
+use super::state::ServedState;
 use super::tiles;
 
-type Work = fn(&Served, &Ask) -> Result<Stored, Problem>;
+type Work = fn(&ServedState, &DecodedRequest) -> Result<StoredAnswer, Problem>;
 
 /// The addresses that are answered from the database, each with its lane and its function.
 const ENDPOINTS: &[(&str, Pace, Work)] = &[
@@ -57,7 +57,8 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
 pub(super) fn router(app: Arc<App>) -> Router {
     let mut router = Router::new();
     for &(path, pace, work) in ENDPOINTS {
-        let answer = move |State(app): State<Arc<App>>, ask: Ask| async move { app.answer(ask, pace, work).await };
+        let answer =
+            move |State(app): State<Arc<App>>, ask: DecodedRequest| async move { app.answer(ask, pace, work).await };
         router = router.route(path, get(answer));
     }
     router
@@ -73,35 +74,35 @@ pub(super) fn router(app: Arc<App>) -> Router {
 }
 
 /// Answers `ok` if the server runs and the database can be read.
-async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
+async fn health(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
     app.answer(ask, Pace::Quick, |served, ask| {
         ask.only(&[])?;
-        Ok(Stored::new("text/plain; charset=utf-8", format!("ok {}\n", served.state).into_bytes()))
+        Ok(StoredAnswer::new("text/plain; charset=utf-8", format!("ok {}\n", served.state).into_bytes()))
     })
     .await
 }
 
 /// Adds measurements to the register.
-async fn add_evidence(State(app): State<Arc<App>>, ask: Ask, body: Bytes) -> Response {
+async fn add_evidence(State(app): State<Arc<App>>, ask: DecodedRequest, body: Bytes) -> Response {
     app.change(ask, move |options, ask| api::evidence::add(options, ask, &body)).await
 }
 
 /// Removes a measurement from the register.
-async fn remove_evidence(State(app): State<Arc<App>>, ask: Ask) -> Response {
+async fn remove_evidence(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
     app.change(ask, api::evidence::remove).await
 }
 
 /// Describes what is served.
-async fn region(State(app): State<Arc<App>>, ask: Ask) -> Response {
+async fn region(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
     let options = app.options.clone();
-    let work = move |Served { region, older, state, .. }: &Served, ask: &Ask| {
+    let work = move |ServedState { region, older, state, .. }: &ServedState, ask: &DecodedRequest| {
         api::region::region(region, older.as_ref(), state, &options, ask)
     };
     app.answer(ask, Pace::Quick, work).await
 }
 
 /// Describes the interface.
-async fn openapi(State(app): State<Arc<App>>, ask: Ask) -> Response {
+async fn openapi(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
     app.answer(ask, Pace::Quick, |_, ask| api::openapi(ask)).await
 }
 

@@ -20,11 +20,11 @@ use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinSet;
 
 use super::app::App;
-use super::older::{Older, common};
-use super::options::{Editing, Limits, Options};
-use super::region::{Identity, Region};
+use super::older::{OlderState, common};
+use super::options::{Editing, Limits, ServerOptions};
+use super::region::{Identity, RegionState};
 use super::routes;
-use super::served::Served;
+use super::state::ServedState;
 use crate::store::StoreError;
 use crate::words::Named as _;
 
@@ -102,7 +102,7 @@ impl Server {
     /// # Errors
     /// A database or the port cannot be opened. The older database is the served one, or has no vehicle in common with it. The address
     /// is not loopback and `allow_remote` is false. Changes are allowed to everybody, or cannot be written.
-    pub fn bind(mut options: Options) -> Result<Self, ServeError> {
+    pub fn bind(mut options: ServerOptions) -> Result<Self, ServeError> {
         if !options.addr.ip().is_loopback() && !options.allow_remote {
             return Err(ServeError::Remote(options.addr));
         }
@@ -114,14 +114,14 @@ impl Server {
             writable.map_err(|source| ServeError::ReadOnly { db: options.db.clone(), source })?;
         }
         let older = options.before.as_deref().map(|before| older(before, &options.db)).transpose()?;
-        let region = Region::open(&options.db)?.holding(options.limits.held_edges);
+        let region = RegionState::open(&options.db)?.holding(options.limits.held_edges);
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
         let listen = |source| ServeError::Listen { addr: options.addr, source };
         let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;
         let address = listener.local_addr()?;
         options.addr = address;
         let limits = options.limits;
-        let app = Arc::new(App::new(options, Served::new(region, older)));
+        let app = Arc::new(App::new(options, ServedState::new(region, older)));
         let router = routes::router(Arc::clone(&app));
         Ok(Self { runtime, listener, address, router, limits, app })
     }
@@ -148,13 +148,13 @@ impl Server {
 }
 
 /// Opens the older database. The two must be two files with a vehicle in common; otherwise there is nothing to compare.
-fn older(before: &Path, db: &Path) -> Result<Older, ServeError> {
+fn older(before: &Path, db: &Path) -> Result<OlderState, ServeError> {
     let canonical = |path: &Path| std::fs::canonicalize(path).ok();
     let same_path = canonical(before).is_some_and(|path| canonical(db) == Some(path));
     if same_path || Identity::of(before)?.same_file(&Identity::of(db)?) {
         return Err(ServeError::SameFile(before.to_owned()));
     }
-    let (old, new) = (Region::open(before)?, Region::open(db)?);
+    let (old, new) = (RegionState::open(before)?, RegionState::open(db)?);
     if common(&old.sets, &new.sets).is_empty() {
         return Err(ServeError::NothingInCommon(Box::new([listed(before, &old), listed(db, &new)])));
     }
@@ -162,7 +162,7 @@ fn older(before: &Path, db: &Path) -> Result<Older, ServeError> {
 }
 
 /// A database with the sets of certificates that it has.
-fn listed(path: &Path, region: &Region) -> String {
+fn listed(path: &Path, region: &RegionState) -> String {
     let sets: Vec<String> =
         region.sets.iter().map(|set| format!("{} ({})", set.vehicle_id, set.policy.name())).collect();
     format!("{}: {}", path.display(), if sets.is_empty() { "none".to_owned() } else { sets.join(", ") })

@@ -39,15 +39,17 @@ mod writer;
 pub use changes::amendment::Amendment;
 pub use changes::renewal::{Renewal, SetRenewal};
 pub use database::Database;
-pub use database::streamed::Streamed;
+pub use database::row_stream::RowStream;
 pub use error::StoreError;
 pub use provenance::records::{Run, VehicleRecord};
 pub use provenance::signatures::SignatureRecord;
 pub use register::evidence::Register;
 pub use results::carry_over::{StoredCertificate, StoredPlans};
-pub use results::checkpoint::{Checkpoint, PartOfWork, Stage};
+pub use results::checkpoint::{Checkpoint, CheckpointStage, PartOfWork};
 pub use results::query::{Area, QueryOptions, Rows};
-pub use results::relative::{Beside, DRIVABLE_BY, IndexedStanding, Reference, ReferenceReader, VehicleSettings};
+pub use results::relative::{
+    DRIVABLE_BY, IndexedStanding, Reference, ReferenceCertificates, ReferenceReader, VehicleSettings,
+};
 pub use results::settings::CertifiedSet;
 pub use results::stream::StraightOn;
 pub use results::turns::{TurnQuery, TurnSet};

@@ -16,7 +16,7 @@ use crate::catalogue::catalogued;
 use netcert::osm::NodeId;
 use netcert::reporter::Silent;
 
-pub struct Drawn {
+pub struct DrawnNetwork {
     pub network: Network,
     pub params: TurnParams,
 }
@@ -24,7 +24,7 @@ pub struct Drawn {
 /// Certificates with the number of their vehicle, in the order made, and their account.
 pub type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
 
-impl Drawn {
+impl DrawnNetwork {
     pub fn new(map: &AsciiMap, side: TrafficSide, kerb_m: f64) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();

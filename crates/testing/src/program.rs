@@ -19,7 +19,7 @@ use crate::demo::demo;
 pub struct WorkFolder(TempDir);
 
 /// The result of a run.
-pub struct Answer {
+pub struct ProgramRun {
     line: String,
     output: Output,
 }
@@ -129,12 +129,12 @@ impl WorkFolder {
         command
     }
 
-    pub fn netcert(&self, line: &str) -> Answer {
-        Answer { line: line.to_owned(), output: self.command(line).output().unwrap() }
+    pub fn netcert(&self, line: &str) -> ProgramRun {
+        ProgramRun { line: line.to_owned(), output: self.command(line).output().unwrap() }
     }
 }
 
-impl Answer {
+impl ProgramRun {
     pub fn of(line: &str, command: &mut Command) -> Self {
         Self { line: line.to_owned(), output: command.output().unwrap() }
     }

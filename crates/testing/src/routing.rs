@@ -20,13 +20,13 @@ use crate::catalogue::catalogued;
 use netcert::reporter::Silent;
 
 /// A network with its movements.
-pub struct Region {
+pub struct TestRegion {
     pub roads: Arc<Roads>,
     pub settings: Settings,
     pub kerbs: Kerbs,
 }
 
-impl Deref for Region {
+impl Deref for TestRegion {
     type Target = Roads;
 
     fn deref(&self) -> &Roads {
@@ -35,9 +35,9 @@ impl Deref for Region {
 }
 
 /// A vehicle on it. Tests may change its permits between two planners.
-pub struct Driver(pub Arc<route::Driver>);
+pub struct TestDriver(pub Arc<route::Driver>);
 
-impl Deref for Driver {
+impl Deref for TestDriver {
     type Target = route::Driver;
 
     fn deref(&self) -> &route::Driver {
@@ -45,13 +45,13 @@ impl Deref for Driver {
     }
 }
 
-impl DerefMut for Driver {
+impl DerefMut for TestDriver {
     fn deref_mut(&mut self) -> &mut route::Driver {
         Arc::get_mut(&mut self.0).expect("no planner has it any more")
     }
 }
 
-impl Region {
+impl TestRegion {
     pub fn read(path: &Path, policy: Policy) -> Self {
         Self::of(read_extract(path, &|_| ()).unwrap(), policy)
     }
@@ -84,7 +84,7 @@ impl Region {
         Self { roads: Roads::new(network), settings, kerbs: Kerbs::default() }
     }
 
-    pub fn driver(&self, id: &str) -> Driver {
+    pub fn driver(&self, id: &str) -> TestDriver {
         let model = Model::new(&catalogued(id)).unwrap();
         let models = std::slice::from_ref(&model);
         let settings = self.settings();
@@ -97,7 +97,7 @@ impl Region {
         })
         .unwrap();
         let permits = self.with_turns(&model, edges);
-        Driver(Arc::new(route::Driver { model, permits }))
+        TestDriver(Arc::new(route::Driver { model, permits }))
     }
 
     /// Permits with turns, certified as the pipeline does.
@@ -128,11 +128,11 @@ impl Region {
         Strokes::new(&self.roads, self.settings())
     }
 
-    pub fn turns(driver: &Driver) -> MadeTurns {
+    pub fn turns(driver: &TestDriver) -> MadeTurns {
         MadeTurns::new(Arc::clone(&driver.0))
     }
 
-    pub fn planner(&self, driver: &Driver, measure: Measure) -> Planner {
+    pub fn planner(&self, driver: &TestDriver, measure: Measure) -> Planner {
         Planner::new(&self.roads, Arc::clone(&driver.0), Speeds::builtin().unwrap(), measure)
     }
 }

@@ -3,7 +3,7 @@
 
 use std::num::NonZeroU8;
 
-use netcert::network::{Area, Areas, Edge, EdgeNo, Narrowing, Network, Restriction, Road, Stroke};
+use netcert::network::{Areas, Edge, EdgeNo, ForbiddenSequence, MappedArea, Narrowing, Network, Road, Stroke};
 use netcert::osm::facts::{
     AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, RuleSet, Strip,
     WidthSource,
@@ -35,7 +35,7 @@ fn areas(network: &Network) -> Areas {
     let Some(&at) = network.shapes.iter().find(|at| at.lon_e7 > 1) else { return Areas::default() };
     let corner = |x: i32, y: i32| LonLat { lon_e7: at.lon_e7 + x, lat_e7: at.lat_e7 + y };
     let ring = |m: i32| [(-m, -m), (m, -m), (m, m), (-m, m), (-m, -m)].map(|(x, y)| corner(x, y)).to_vec();
-    let area = |way_id, kind, m| Area { way_id, kind, ring: ring(m) };
+    let area = |way_id, kind, m| MappedArea { way_id, kind, ring: ring(m) };
     Areas::new(vec![area(7, AreaKind::Road(RoadClass::Primary), 700), area(9, AreaKind::Island, 50)], network)
 }
 
@@ -113,7 +113,7 @@ fn add_restrictions(network: &mut Network) {
         let start = network.restriction_edges.len() as u32;
         network.restriction_edges.extend((no * 7..).map(EdgeNo::new).take(2 + no as usize % 3));
         let kind = format!("{}_{}", if no.is_multiple_of(4) { "only" } else { "no" }, turns[no as usize % 6]);
-        network.restrictions.push(Restriction {
+        network.restrictions.push(ForbiddenSequence {
             relation_id: 3_000_000_000 + i64::from(no / 2),
             kind: RestrictionKind::named(&kind).unwrap(),
             conditional: no.is_multiple_of(5),

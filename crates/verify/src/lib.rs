@@ -12,9 +12,9 @@ use netcert_rows::settings;
 use netcert_store as store;
 
 pub mod check;
-mod displayed;
 mod error;
 mod records;
+mod road_columns;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub struct Request {
 
 /// What certificates are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CertificateKind {
     /// Of edges.
     Edge,
     /// Of turns.
@@ -69,7 +69,7 @@ pub struct Checked {
     /// The corridor policy.
     pub policy: Policy,
     /// What the certificates are of.
-    pub kind: Kind,
+    pub kind: CertificateKind,
     /// One outcome for each certificate.
     pub report: SetReport,
 }
@@ -137,7 +137,7 @@ impl Verification {
     }
 }
 
-impl Kind {
+impl CertificateKind {
     /// The word for one of them.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -195,18 +195,18 @@ pub fn verify(
     let mut records = records::check(&mut database, request.source.as_deref())?;
     let network = database.load_network()?;
     records.extend(measurements(&mut database, &network)?);
-    records.extend(displayed::check(&mut database, &network)?);
+    records.extend(road_columns::check(&mut database, &network)?);
     let mut sets = Vec::new();
     let mut facts: Option<(Kerbs, Vec<TurnFacts>)> = None;
     for set in request.sets(&mut database, path)? {
         let settings = set.settings()?;
-        let mut add = |kind: Kind, report: SetReport| {
+        let mut add = |kind: CertificateKind, report: SetReport| {
             let checked = Checked { vehicle_id: set.vehicle_id.clone(), policy: set.policy, kind, report };
             done(&checked);
             sets.push(checked);
         };
         records.extend(missing_edges(&mut database, &network, &set)?);
-        add(Kind::Edge, request.edges(&mut database, &network, &set, &settings, stop)?);
+        add(CertificateKind::Edge, request.edges(&mut database, &network, &set, &settings, stop)?);
         let has_turns = database.has_turns(&set.vehicle_id, set.policy)?;
         if !has_turns && !settings.turns {
             continue;
@@ -216,7 +216,7 @@ pub fn verify(
         let (_, facts) = facts.insert(known.unwrap_or_else(made));
         if has_turns {
             records.extend(missing_turns(&mut database, facts, &set)?);
-            add(Kind::Turn, request.turns(&mut database, &network, facts, &set, &settings, stop)?);
+            add(CertificateKind::Turn, request.turns(&mut database, &network, facts, &set, &settings, stop)?);
         } else if !facts.is_empty() {
             let detail = format!("{}: its settings say that its turns are certified, and they are not", set.layer);
             records.push(Complaint { grade: Grade::Malformed, detail });
@@ -319,7 +319,7 @@ fn missing_edges(
 ) -> Result<Vec<Complaint>, VerifyError> {
     let rows = database.edge_standings(&set.vehicle_id, set.policy)?;
     let there: Vec<u32> = rows.map(|row| row.map(|(index, _)| index)).collect::<Result<_, _>>()?;
-    Ok(missing(set, Kind::Edge, &there, network.edges.iter().map(|edge| edge.id)))
+    Ok(missing(set, CertificateKind::Edge, &there, network.edges.iter().map(|edge| edge.id)))
 }
 
 /// Complaints about turns of the network that have no row in a set.
@@ -330,11 +330,11 @@ fn missing_turns(
 ) -> Result<Vec<Complaint>, VerifyError> {
     let rows = database.turn_standings(&set.vehicle_id, set.policy)?;
     let there: Vec<u32> = rows.map(|row| row.map(|(index, _)| index)).collect::<Result<_, _>>()?;
-    Ok(missing(set, Kind::Turn, &there, facts.iter().map(|turn| turn.id)))
+    Ok(missing(set, CertificateKind::Turn, &there, facts.iter().map(|turn| turn.id)))
 }
 
 /// `there`: the indices of the rows, in order. `all`: the ids of what is to have one.
-fn missing(set: &CertifiedSet, kind: Kind, there: &[u32], all: impl Iterator<Item = i64>) -> Vec<Complaint> {
+fn missing(set: &CertifiedSet, kind: CertificateKind, there: &[u32], all: impl Iterator<Item = i64>) -> Vec<Complaint> {
     let lacking = (0_u32..).zip(all).filter(|(index, _)| there.binary_search(index).is_err());
     let complaint = |(_, id): (u32, i64)| Complaint {
         grade: Grade::Malformed,

@@ -2,16 +2,16 @@
 
 use std::io::Write;
 
-use netcert::rows::{Cell, CertificateRow, Relative, Standing};
-use netcert::store::{Beside, DRIVABLE_BY, StoreError};
+use netcert::rows::{Cell, CertificateRow, CertificateStanding, Relative};
+use netcert::store::{DRIVABLE_BY, ReferenceCertificates, StoreError};
 
 /// The comparison of a row, if one is asked for.
 pub(crate) fn beside(
-    reference: &mut Option<Beside<'_>>,
+    reference: &mut Option<ReferenceCertificates<'_>>,
     index: u32,
     certificate: &CertificateRow,
 ) -> Result<Option<Relative>, StoreError> {
-    reference.as_mut().map(|reference| reference.relative(index, Standing::of(certificate))).transpose()
+    reference.as_mut().map(|reference| reference.relative(index, CertificateStanding::of(certificate))).transpose()
 }
 
 /// What follows the scope of `safe` in an answer that compares.

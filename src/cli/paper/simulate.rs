@@ -2,7 +2,7 @@
 
 use anyhow::anyhow;
 use netcert::corridor::Corridor;
-use netcert::published::{Beta, DrawnRoute, Permissible, Reading, Route, RouteCert, Scenario, route_cert};
+use netcert::published::{Beta, DrawnRoute, Permissible, Reading, RouteCert, Scenario, TimedRoute, route_cert};
 use netcert::speed_profile::SpeedProfile;
 use netcert::stet::{self, Certificate, Model, Options};
 use netcert::stop::Stop;
@@ -15,7 +15,7 @@ const USUAL: (f64, f64, f64, f64) = (0.15, 3.0, 0.2, 0.3);
 pub(super) struct Simulated {
     pub(super) scenario: Scenario,
     pub(super) corridor: Corridor,
-    pub(super) route: Route,
+    pub(super) route: TimedRoute,
     /// Algorithm 1 in the reading nearest to the paper's results.
     pub(super) paper: RouteCert,
     /// Algorithm 1 with β° as printed.
@@ -28,7 +28,7 @@ pub(super) struct Simulated {
 
 pub(super) fn run(scenario: &Scenario, route: &DrawnRoute) -> anyhow::Result<Simulated> {
     let corridor = route.corridor(scenario.w_min_m);
-    let route = Route::new(&corridor, &SpeedProfile::default());
+    let route = TimedRoute::new(&corridor, &SpeedProfile::default());
     let by = |beta| {
         let reading = Reading { beta, ..Reading::SIMULATED };
         route_cert(&scenario.system, &route, &route.centre, &Permissible::default(), &reading)

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use anyhow::anyhow;
-use netcert::published::{DrawnRoute, Permissible, Reading, Route, Scenario, System, route_cert};
+use netcert::published::{DrawnRoute, Permissible, Reading, Scenario, System, TimedRoute, route_cert};
 use netcert::speed_profile::SpeedProfile;
 use netcert::stet::{self, MAX_UNITS, Model, Options};
 use netcert::stop::Stop;
@@ -62,7 +62,7 @@ const ROOM_M: f64 = 10.0;
 pub(super) fn measure(table: &[Scenario], route: &DrawnRoute) -> anyhow::Result<Timing> {
     let scenario = table.get(4).ok_or_else(|| anyhow!("data/paper/scenarios.toml: there is no scenario 5"))?;
     let corridor = route.corridor(scenario.w_min_m + ROOM_M);
-    let timed = Route::new(&corridor, &SpeedProfile::default());
+    let timed = TimedRoute::new(&corridor, &SpeedProfile::default());
     let with = |trailers: usize| System { trailers, ..scenario.system };
     let paper = (1..=TRAILERS).map(|n| {
         let run = || {

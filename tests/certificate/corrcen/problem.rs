@@ -11,7 +11,7 @@ use netcert::stet::motion::{Pose, sweep_path};
 use netcert::vehicle::Vehicle;
 
 use netcert_testing::oracle::path::{V2, along, direction, dot, left_of};
-use netcert_testing::oracle::road::Road;
+use netcert_testing::oracle::road::PreparedCorridor;
 
 const POINT_SPACING_M: f64 = 1.5;
 
@@ -19,7 +19,7 @@ const POINT_SPACING_M: f64 = 1.5;
 pub struct Problem<'a> {
     pub corridor: &'a Corridor,
     pub vehicle: &'a Vehicle,
-    road: Road<'a>,
+    road: PreparedCorridor<'a>,
     /// Unit, and metres ahead of its axle.
     points: Vec<(usize, f64)>,
 }
@@ -49,7 +49,7 @@ impl<'a> Problem<'a> {
             // The innermost point on a steady circle.
             points.push((unit, 0.0));
         }
-        Self { corridor, vehicle, road: Road::new(corridor), points }
+        Self { corridor, vehicle, road: PreparedCorridor::new(corridor), points }
     }
 
     pub fn coefficients(&self) -> usize {

@@ -2,7 +2,8 @@
 
 use netcert::corridor::Corridor;
 use netcert::published::{
-    As, Beta, Chain, Correction, Offset, Permissible, Reading, Stet, System, bound_m, boundary_leeway, cert, worst_side,
+    As, Beta, Correction, KinematicChain, Offset, Permissible, Reading, Stet, System, bound_m, boundary_leeway, cert,
+    worst_side,
 };
 use netcert::stet::{self, Model, Options};
 use netcert::stop::Stop;
@@ -90,7 +91,7 @@ fn e18_the_last_trailer_does_not_move_when_the_prime_mover_does() {
     let permissible = Permissible { min_shrink: 1.0, ..Permissible::default() };
     let run = run(&s.system, &route, &route.centre, &permissible, &TANGENT);
     let driven: Vec<V2> = run.tubes[0].iter().map(|stet| stet.centre).collect();
-    let chain = Chain::follow(&s.system, &driven, route.tangent[0], &TANGENT);
+    let chain = KinematicChain::follow(&s.system, &driven, route.tangent[0], &TANGENT);
     let first = run.steps.iter().position(|step| step.shift_m != 0.0).unwrap();
     let (promised, last) = (run.steps[first].after.least_m(), s.system.trailers);
     let really = Stet { centre: chain.centre[last][first], ..run.tubes[last][first] };

@@ -1,7 +1,7 @@
 //! 𝒞 compared with its claimed guarantee, Eq. 22: E4, E5, E7, and hinges that are never tested (E20).
 
 use netcert::corridor::Corridor;
-use netcert::published::{As, Beta, Offset, Reading, Route, System, cert};
+use netcert::published::{As, Beta, Offset, Reading, System, TimedRoute, cert};
 use netcert::stet::{self, Model, Options};
 use netcert::stop::Stop;
 
@@ -37,7 +37,7 @@ fn e05_a_prime_mover_outside_the_road_does_not_count() {
         let run = run(&system, &route, &path, &NOTHING, &reading);
         // The run-in is left out, because the last trailer has not cut in there yet.
         let steady: Vec<_> = run.tubes.iter().map(|tube| tube[200..].to_vec()).collect();
-        let rest = Route {
+        let rest = TimedRoute {
             t_s: route.t_s[150..].to_vec(),
             centre: route.centre[150..].to_vec(),
             tangent: route.tangent[150..].to_vec(),

@@ -1,7 +1,7 @@
 //! Def. 2 and 5: E10, E11, and the strip 𝓡(t) (E17).
 
 use netcert::corridor::Corridor;
-use netcert::published::{As, Offset, Reading, Shape, Stet, System, boundary_leeway};
+use netcert::published::{As, EllipseMatrix, Offset, Reading, Stet, System, boundary_leeway};
 
 use super::scene::{NOTHING, arc, is_on_the_road, route, run};
 use netcert_testing::oracle::path::along;
@@ -10,7 +10,7 @@ const POINT_M: f64 = 1e-6;
 
 /// An ellipse so small that leeway is its centre's distance from the edges.
 fn point(centre: [f64; 2]) -> Stet {
-    Stet { centre, shape: Shape::from_semi_axes([1.0, 0.0], POINT_M, POINT_M) }
+    Stet { centre, shape: EllipseMatrix::from_semi_axes([1.0, 0.0], POINT_M, POINT_M) }
 }
 
 #[test]

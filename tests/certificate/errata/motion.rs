@@ -40,7 +40,7 @@ fn e08_the_tube_around_zero_sway_does_not_hold_a_rolling_axle() {
     // The tube of positions alone: the prime mover is a point on its path.
     let tube = |run: &netcert::published::RouteCert| {
         let e = run.chain.link[0][i].direction;
-        let point = netcert::published::Shape::from_semi_axes(e, 1e-3, 1e-3);
+        let point = netcert::published::EllipseMatrix::from_semi_axes(e, 1e-3, 1e-3);
         let shapes = run.chain.xi(i, &point, &slip, &Reading::SIMULATED);
         Stet { centre: run.tubes[3][i].centre, shape: shapes[3] }
     };

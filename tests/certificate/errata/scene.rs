@@ -2,7 +2,7 @@
 
 use netcert::corridor::Corridor;
 use netcert::published::{
-    Permissible, Reading, Route, RouteCert, Scenario, Stet, System, drawn_route, route_cert, scenarios,
+    Permissible, Reading, RouteCert, Scenario, Stet, System, TimedRoute, drawn_route, route_cert, scenarios,
 };
 use netcert::speed_profile::SpeedProfile;
 
@@ -14,8 +14,8 @@ pub(crate) fn scenario(number: u32) -> Scenario {
     scenarios().unwrap().into_iter().find(|s| s.number == number).unwrap()
 }
 
-pub(crate) fn route(corridor: &Corridor) -> Route {
-    Route::new(corridor, &SpeedProfile::default())
+pub(crate) fn route(corridor: &Corridor) -> TimedRoute {
+    TimedRoute::new(corridor, &SpeedProfile::default())
 }
 
 /// The drawn route of 543.62 m.
@@ -30,13 +30,13 @@ pub(crate) fn arc(radius: f64, length_m: f64, half_m: f64) -> Corridor {
 }
 
 /// The centreline shifted to the left.
-pub(crate) fn shifted(route: &Route, by_m: f64) -> Vec<V2> {
+pub(crate) fn shifted(route: &TimedRoute, by_m: f64) -> Vec<V2> {
     (0..route.len()).map(|i| along(route.centre[i], by_m, route.normal(i))).collect()
 }
 
 pub(crate) fn run(
     system: &System,
-    route: &Route,
+    route: &TimedRoute,
     path: &[V2],
     permissible: &Permissible,
     reading: &Reading,
@@ -46,7 +46,7 @@ pub(crate) fn run(
 
 /// Whether every point of the ellipse lies between the edges, each point at its own foot. No formula of the paper is
 /// used.
-pub(crate) fn is_on_the_road(route: &Route, stet: &Stet, near: usize) -> bool {
+pub(crate) fn is_on_the_road(route: &TimedRoute, stet: &Stet, near: usize) -> bool {
     stet.outline(720).into_iter().all(|p| {
         let foot = route.foot(p, near);
         foot.lateral_m.abs() <= route.half_width_at_m(&foot)

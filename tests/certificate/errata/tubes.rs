@@ -1,7 +1,7 @@
 //! Ellipses: E1 to E3, E6, E9, and the evidence of Table I itself (E12, E13).
 
 use netcert::published::{
-    As, Beta, Reading, Shape, System, follower_shape, kurzhanski_varaiya, optimal_beta, peak_sways_m,
+    As, Beta, EllipseMatrix, Reading, System, follower_shape, kurzhanski_varaiya, optimal_beta, peak_sways_m,
     reach_displacement, scenarios, sway_ellipse, sway_shape,
 };
 
@@ -12,7 +12,7 @@ const EAST: V2 = [1.0, 0.0];
 const TILTED: V2 = [0.8, 0.6];
 
 /// Q_1 behind a prime mover that heads east.
-fn first_trailer(system: &System, beta: Beta) -> Shape {
+fn first_trailer(system: &System, beta: Beta) -> EllipseMatrix {
     let reading = Reading { beta, ..Reading::SIMULATED };
     follower_shape(&system.prime_shape(EAST, As::Printed), EAST, system, &reading)
 }
@@ -143,7 +143,7 @@ fn e06_the_ellipse_of_half_the_dimensions_leaves_the_corners_out() {
 
 #[test]
 fn e09_the_printed_support_radius_lets_a_tilted_ellipse_over_the_edge() {
-    let shape = Shape::from_semi_axes(TILTED, 5.6, 1.3);
+    let shape = EllipseMatrix::from_semi_axes(TILTED, 5.6, 1.3);
     let n = [0.0, 1.0];
     let reach = netcert::published::Stet { centre: [0.0; 2], shape }
         .outline(7200)

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::described::faults;
 use super::http::{Reply, Server};
+use super::openapi::faults;
 use crate::evidence::{edges_of, rows_of, stroke_of};
 use netcert_testing::program::WorkFolder;
 

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::rows::EdgeRow;
-use netcert::serve::{Editing, Limits, Options};
+use netcert::serve::{Editing, Limits, ServerOptions};
 use netcert::store::TurnQuery;
 use netcert::words::{Named, verdict_words};
 
@@ -160,7 +160,7 @@ fn tiles_from_memory_have_the_bytes_of_tiles_from_the_file() {
     let addresses: Vec<String> = (11..=16)
         .flat_map(|z| tiles(&rows, z).into_iter().map(move |(x, y)| format!("/tiles/lane/{VEHICLE}/{z}/{x}/{y}.mvt")))
         .collect();
-    let options = Options {
+    let options = ServerOptions {
         db: loaded.place.path("demo.gpkg"),
         before: None,
         addr: ([127, 0, 0, 1], 0).into(),

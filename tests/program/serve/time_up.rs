@@ -5,7 +5,7 @@ use std::io::{BufReader, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use netcert::serve::{Editing, LaneLimits, Limits, Options, Server};
+use netcert::serve::{Editing, LaneLimits, Limits, Server, ServerOptions};
 
 use super::http::Reply;
 use netcert_testing::program::WorkFolder;
@@ -23,7 +23,7 @@ impl Narrow {
     /// One piece of slow work at a time, each done within `time`.
     fn over(place: &WorkFolder, time: Duration) -> Self {
         let slow = LaneLimits { at_a_time: 1, waiting: 8, time };
-        let server = Server::bind(Options {
+        let server = Server::bind(ServerOptions {
             db: place.path("demo.gpkg"),
             before: None,
             addr: "127.0.0.1:0".parse().unwrap(),

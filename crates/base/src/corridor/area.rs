@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// A part of the plane: what lies inside an odd number of rings. The last vertex of a ring joins the first. Positions are
 /// metres in the corridor's frame.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Area {
+pub struct PlaneArea {
     /// The boundary.
     pub rings: Vec<Vec<[f64; 2]>>,
 }
@@ -20,10 +20,10 @@ pub struct AreaSpan {
     /// Stations of the steer axle; at least two.
     pub heads: Range<usize>,
     /// The area. All of the vehicle is inside, from its front to its rear, while the steer axle is at these stations.
-    pub area: Arc<Area>,
+    pub area: Arc<PlaneArea>,
 }
 
-impl Area {
+impl PlaneArea {
     /// The boundary's segments.
     pub fn segments(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         self.rings.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
@@ -58,12 +58,12 @@ mod tests {
     #[test]
     fn a_place_in_a_hole_is_outside() {
         let square = |half: f64| vec![[-half, -half], [half, -half], [half, half], [-half, half]];
-        let area = Area { rings: vec![square(5.0), square(1.0)] };
+        let area = PlaneArea { rings: vec![square(5.0), square(1.0)] };
         assert!(area.contains([3.0, 0.5]));
         assert!(!area.contains([0.3, 0.2]));
         assert!(!area.contains([7.0, 0.0]));
         assert_eq!(area.segments().count(), 8);
         assert_eq!(area.nearest([2.5, 0.5]), Some([1.0, 0.5]));
-        assert_eq!(Area::default().nearest([3.0, 0.5]), None);
+        assert_eq!(PlaneArea::default().nearest([3.0, 0.5]), None);
     }
 }

@@ -1,13 +1,13 @@
 //! A corridor as plain values, independent of its origin.
 
 mod area;
-mod closed;
+mod closed_form;
 mod fit;
 mod side;
 
-pub use area::{Area, AreaSpan};
-pub use closed::CurvatureProfile;
-pub(crate) use closed::gentle_clothoid_step;
+pub use area::{AreaSpan, PlaneArea};
+pub use closed_form::CurvatureProfile;
+pub(crate) use closed_form::gentle_clothoid_step;
 pub use side::Side;
 
 /// A route corridor, sampled at uniform arc length along its C¹ centreline. Units are metres and radians. Arc length

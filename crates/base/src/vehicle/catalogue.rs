@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::regions::Regions;
-use super::{Fault, Vehicle, VehicleError, file};
+use super::{Vehicle, VehicleError, VehicleFault, file};
 
 /// The catalogue that ships.
 const BUILTIN: &str = include_str!("../../../../data/vehicles.toml");
@@ -20,7 +20,7 @@ const MAX_COMPARED: usize = 100;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Catalogue {
     vehicles: Vec<Vehicle>,
-    odd: Vec<Fault>,
+    odd: Vec<VehicleFault>,
 }
 
 impl Catalogue {
@@ -86,7 +86,7 @@ impl Catalogue {
 
     /// Warnings with vehicle, field and line: values that are possible but unusual.
     #[must_use]
-    pub fn warnings(&self) -> &[Fault] {
+    pub fn warnings(&self) -> &[VehicleFault] {
         &self.odd
     }
 

@@ -4,9 +4,9 @@
 //! cannot handle. They do not say that a vehicle is legal anywhere. All faults are collected.
 
 use super::class::Classes;
-use super::collide::{self, Clash, Ends};
+use super::collide::{self, BodyEnds, Clash};
 use super::definition::{VehicleDefinition, closure_m};
-use super::{Fault, Unit, Vehicle};
+use super::{Unit, Vehicle, VehicleFault};
 
 /// A field of a file: vehicle, unit (if the field is a unit's), field name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +27,10 @@ const MAX_SOURCE_CHARS: usize = 4000;
 const LENGTH_TOLERANCE_M: f64 = 0.1;
 
 /// All faults of `definitions`, in file order. `line_of` returns the line of a field.
-pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPath) -> Option<usize>) -> Vec<Fault> {
+pub(crate) fn faults(
+    definitions: &[VehicleDefinition],
+    line_of: &dyn Fn(FieldPath) -> Option<usize>,
+) -> Vec<VehicleFault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
         check.vehicle = index;
@@ -44,20 +47,23 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPa
         }
         // Bodies that already overlap when the vehicle is straight have been reported.
         if check.faults.len() == found {
-            check.turning(&vehicle.units, Ends::Round);
+            check.turning(&vehicle.units, BodyEnds::Round);
         }
     }
     check.faults
 }
 
 /// Warnings about vehicles without a fault. A real vehicle may be so, but somebody should look at it.
-pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(FieldPath) -> Option<usize>) -> Vec<Fault> {
+pub(crate) fn warnings(
+    definitions: &[VehicleDefinition],
+    line_of: &dyn Fn(FieldPath) -> Option<usize>,
+) -> Vec<VehicleFault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
         check.vehicle = index;
         check.label = format!("vehicle {:?}", shown(&definition.id));
         let vehicle = definition.vehicle();
-        check.turning(&vehicle.units, Ends::Square);
+        check.turning(&vehicle.units, BodyEnds::Square);
     }
     check.faults
 }
@@ -66,7 +72,7 @@ struct Check<'a> {
     line_of: &'a dyn Fn(FieldPath) -> Option<usize>,
     vehicle: usize,
     label: String,
-    faults: Vec<Fault>,
+    faults: Vec<VehicleFault>,
 }
 
 impl Check<'_> {
@@ -76,7 +82,7 @@ impl Check<'_> {
             Some((i, u)) => format!("{}, unit {} ({}), {field}", self.label, i + 1, shown(&u.name)),
             None => format!("{}, {field}", self.label),
         };
-        self.faults.push(Fault { line, place, problem });
+        self.faults.push(VehicleFault { line, place, problem });
     }
 
     fn id(&mut self, definition: &VehicleDefinition, earlier: &[VehicleDefinition]) {
@@ -203,7 +209,7 @@ impl Check<'_> {
 
     /// Hinge limits that overlapping bodies keep the hinge from reaching. If even rounded ends overlap, the limit is a
     /// fault, otherwise a warning.
-    fn turning(&mut self, units: &[Unit], ends: Ends) {
+    fn turning(&mut self, units: &[Unit], ends: BodyEnds) {
         for clash in collide::clashes(units).into_iter().filter(|clash| clash.ends == ends) {
             let Clash { hinge, units: (ahead, behind), angle_deg, .. } = clash;
             let Some(unit) = units.get(hinge) else { continue };
@@ -214,13 +220,13 @@ impl Check<'_> {
                     let problem = format!("{who} overlap when the vehicle is straight");
                     self.fault(Some((hinge, unit)), "front_overhang_m", problem);
                 }
-                (true, Ends::Round) => {
+                (true, BodyEnds::Round) => {
                     let problem = format!(
                         "{limit_deg} cannot be reached: {who} meet at {angle_deg}° even if their ends are round"
                     );
                     self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
                 }
-                (true, Ends::Square) => {
+                (true, BodyEnds::Square) => {
                     let problem = format!(
                         "{limit_deg} is reached only by bodies with rounded corners: as rectangles, {who} meet at \
                          {angle_deg}°"

@@ -21,7 +21,7 @@ const FIFTH_WHEEL_MOST: f64 = 0.28;
 
 /// The ends of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ends {
+pub(crate) enum BodyEnds {
     /// Half circles. Bodies that overlap even so cannot be built.
     Round,
     /// With corners, which alone overlap.
@@ -38,7 +38,7 @@ pub(crate) struct Clash {
     /// Hinge angle of the overlap, degrees; not above the hinge's limit.
     pub(crate) angle_deg: f64,
     /// With what ends the bodies overlap.
-    pub(crate) ends: Ends,
+    pub(crate) ends: BodyEnds,
 }
 
 /// Whether `unit` is a dolly or turntable axle: a drawbar draws it, and the next unit's body lies over it.
@@ -62,11 +62,11 @@ pub(crate) fn carries(units: &[Unit], unit: usize) -> bool {
 /// straight vehicle (`angle_deg` 0) are included.
 pub(crate) fn clashes(units: &[Unit]) -> Vec<Clash> {
     (1..units.len())
-        .filter_map(|hinge| first(units, hinge, Ends::Round).or_else(|| first(units, hinge, Ends::Square)))
+        .filter_map(|hinge| first(units, hinge, BodyEnds::Round).or_else(|| first(units, hinge, BodyEnds::Square)))
         .collect()
 }
 
-fn first(units: &[Unit], hinge: usize, ends: Ends) -> Option<Clash> {
+fn first(units: &[Unit], hinge: usize, ends: BodyEnds) -> Option<Clash> {
     let limit_deg = units.get(hinge)?.max_articulation_rad.to_degrees();
     let steps = (limit_deg / STEP_DEG).floor() as u32;
     let angles = (0..=steps).map(|i| f64::from(i) * STEP_DEG).chain([limit_deg]);
@@ -76,8 +76,8 @@ fn first(units: &[Unit], hinge: usize, ends: Ends) -> Option<Clash> {
             for ahead in 0..hinge {
                 let (Some(a), Some(b)) = (bodies.get(ahead), bodies.get(behind)) else { continue };
                 let meet = match ends {
-                    Ends::Round => a.rounded_meets(b),
-                    Ends::Square => a.meets(b),
+                    BodyEnds::Round => a.rounded_meets(b),
+                    BodyEnds::Square => a.meets(b),
                 };
                 if meet && may_not_meet(units, ahead, behind) {
                     return Some(Clash { hinge, units: (ahead, behind), angle_deg, ends });

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// One fault of a vehicle file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
+pub struct VehicleFault {
     /// Line in the file, from 1, if known.
     pub line: Option<usize>,
     /// `vehicle "id", unit 2 "dolly", width_m`, or empty.
@@ -13,7 +13,7 @@ pub struct Fault {
     pub problem: String,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for VehicleFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {
             write!(f, "line {line}: ")?;
@@ -43,7 +43,7 @@ pub enum VehicleError {
         /// Path as given.
         file: String,
         /// All faults in file order; never empty.
-        faults: Vec<Fault>,
+        faults: Vec<VehicleFault>,
     },
     /// No vehicle of that id.
     #[error("no vehicle {id:?} in the catalogue{}; `netcert vehicles list` shows all", meant(.nearest))]
@@ -63,7 +63,7 @@ pub enum VehicleError {
     },
 }
 
-fn listed(faults: &[Fault]) -> String {
+fn listed(faults: &[VehicleFault]) -> String {
     match faults {
         [one] => format!(": {one}"),
         many => many.iter().map(|fault| format!("\n  {fault}")).collect(),

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::check::{FieldPath, faults, warnings};
 use super::definition::VehicleDefinition;
-use super::{Fault, Vehicle, VehicleError};
+use super::{Vehicle, VehicleError, VehicleFault};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -17,16 +17,16 @@ struct VehicleFile {
 }
 
 /// The vehicles of a file's text in file order, at least one, and the warnings about them.
-pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>> {
+pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<VehicleFault>), Vec<VehicleFault>> {
     let unreadable = |e: &toml::de::Error| {
         let line = e.span().map(|span| line_at(text, span.start));
-        vec![Fault { line, place: String::new(), problem: e.message().to_owned() }]
+        vec![VehicleFault { line, place: String::new(), problem: e.message().to_owned() }]
     };
     let tree = DeTable::parse(text).map_err(|e| unreadable(&e))?;
     let file: VehicleFile = toml::from_str(text).map_err(|e| unreadable(&e))?;
     if file.vehicle.is_empty() {
         let problem = "no vehicle in the file; it needs at least one [[vehicle]]".to_owned();
-        return Err(vec![Fault { line: None, place: String::new(), problem }]);
+        return Err(vec![VehicleFault { line: None, place: String::new(), problem }]);
     }
     let line_of = |path| Some(line_at(text, offset(&tree, path)?));
     let faults = faults(&file.vehicle, &line_of);
@@ -60,8 +60,9 @@ impl Vehicle {
     /// [`VehicleError::Refused`] with field and bound, and with the line of a syntax error.
     pub fn from_json(json: &str) -> Result<Self, VehicleError> {
         let refused = |faults| VehicleError::Refused { file: "vehicle definition".into(), faults };
-        let definition: VehicleDefinition = serde_json::from_str(json)
-            .map_err(|e| refused(vec![Fault { line: Some(e.line()), place: String::new(), problem: e.to_string() }]))?;
+        let definition: VehicleDefinition = serde_json::from_str(json).map_err(|e| {
+            refused(vec![VehicleFault { line: Some(e.line()), place: String::new(), problem: e.to_string() }])
+        })?;
         let faults = faults(std::slice::from_ref(&definition), &|_| None);
         if faults.is_empty() { Ok(definition.vehicle()) } else { Err(refused(faults)) }
     }

@@ -29,8 +29,8 @@ use serde::{Deserialize, Serialize};
 pub use catalogue::Catalogue;
 pub use class::{Class, Classes, EVERYBODY, Member};
 pub use definition::{UnitDefinition, VehicleDefinition};
-pub use error::{Fault, VehicleError};
-pub use regions::{Region, Regions};
+pub use error::{VehicleError, VehicleFault};
+pub use regions::{CatalogueRegion, Regions};
 
 /// One unit of the chain, in metres and radians. A dolly is a unit of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

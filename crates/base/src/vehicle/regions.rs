@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use serde::Deserialize;
 
-use super::{Fault, VehicleError};
+use super::{VehicleError, VehicleFault};
 
 const BUILTIN: &str = include_str!("../../../../data/regions.toml");
 
 /// One region of the catalogue.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Region {
+pub struct CatalogueRegion {
     /// As in [`super::Vehicle::region`].
     pub code: String,
     /// Name for people.
@@ -25,7 +25,7 @@ pub struct Region {
 #[serde(deny_unknown_fields)]
 pub struct Regions {
     otherwise: Vec<String>,
-    region: Vec<Region>,
+    region: Vec<CatalogueRegion>,
     #[serde(skip)]
     by_country: HashMap<[u8; 2], Vec<String>>,
 }
@@ -38,7 +38,7 @@ impl Regions {
     pub fn builtin() -> Result<Self, VehicleError> {
         let refused = |problem: String| VehicleError::Refused {
             file: "data/regions.toml".into(),
-            faults: vec![Fault { line: None, place: String::new(), problem }],
+            faults: vec![VehicleFault { line: None, place: String::new(), problem }],
         };
         let mut regions: Self = toml::from_str(BUILTIN).map_err(|e| refused(e.to_string()))?;
         for region in &regions.region {
@@ -59,7 +59,7 @@ impl Regions {
     }
 
     /// All regions, in file order.
-    pub fn iter(&self) -> impl Iterator<Item = &Region> {
+    pub fn iter(&self) -> impl Iterator<Item = &CatalogueRegion> {
         self.region.iter()
     }
 }

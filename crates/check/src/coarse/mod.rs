@@ -10,7 +10,7 @@ use crate::UP;
 use crate::allowance::{BEND_ROUNDING, BETWEEN, JUMPS_PART, SIN_SPARE};
 use crate::feet::point;
 use crate::road::{DIP_PART, Section};
-use crate::swept::{ABOUT, SweptVehicle};
+use crate::swept_vehicle::{ABOUT, SweptVehicle};
 use crate::tubes::Tube;
 
 /// A body point is at most this share of a stretch ahead of its station or behind it.

@@ -4,10 +4,10 @@ use super::*;
 use crate::STEPS;
 use crate::cell::Cell;
 use crate::claim::SpanClaim;
-use crate::drawn::{chain, random, unit};
 use crate::feet::Hint;
-use crate::fit::Reading;
+use crate::fit::StationReading;
 use crate::subject::Subject;
+use crate::test_vehicles::{chain, random, unit};
 use netcert_base::corridor::Corridor;
 
 /// A number up to `most` to either side of 0.
@@ -75,7 +75,7 @@ fn no_place_has_less_leeway_than_a_coarse_bound_says() {
         let unfit = [0.0, 0.002, 0.004][round % 3];
         let corridor = road(&mut random, sharpest, unfit);
         let shift = about_zero(&mut random, 0.5);
-        let subject = Subject::new(chain, &corridor, |s| shift * (0.2 * s).sin(), Reading::Strict).unwrap();
+        let subject = Subject::new(chain, &corridor, |s| shift * (0.2 * s).sin(), StationReading::Strict).unwrap();
         let swept = subject.swept(0.1).unwrap();
         for start in (0..swept.motion.steps()).step_by(STEPS) {
             for (unit, side) in (0..chain.links.len()).flat_map(|unit| [(unit, 0), (unit, 1)]) {
@@ -112,7 +112,7 @@ fn where_the_road_turns_at_a_station_the_middle_of_a_body_is_not_overlooked() {
         corridor.heading[k] = 0.035;
         (corridor.x[k], corridor.y[k]) = (40.0 + beyond * f64::cos(0.035), beyond * f64::sin(0.035));
     }
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let swept = subject.swept(0.1).unwrap();
     let mut random = random(3);
     let steps = (subject.road.lead + 20) * STEPS..(subject.road.lead + 65) * STEPS;

@@ -1,9 +1,9 @@
 //! How far a piece keeps from one segment of a boundary, in the direction that shows the most.
 
+use super::deductions::{Deductions, ROUNDING_M};
 use super::piece::BodyPiece;
-use super::taken::{ROUNDING_M, Taken};
 use crate::hull::Segment;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::vector::{Point, framed, length};
 
 /// Small cells are also held apart from a segment in directions that are turned by these tangents from the shortest way, then by these
@@ -15,7 +15,14 @@ const AHEAD: f64 = 1e-9;
 
 impl SweptVehicle<'_> {
     /// Bound of the distance that a piece keeps from a segment, metres. `way` is the shortest from its hull.
-    pub(super) fn kept(&self, piece: &BodyPiece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
+    pub(super) fn kept(
+        &self,
+        piece: &BodyPiece,
+        taken: &Deductions,
+        hull: &[Point],
+        segment: Segment,
+        way: Point,
+    ) -> f64 {
         let apart = length(way);
         if apart < ROUNDING_M {
             return self.beyond(piece, taken, hull, segment);
@@ -29,7 +36,7 @@ impl SweptVehicle<'_> {
 
     /// Bound of the room of a piece that is on the boundary or outside, metres, below zero. Beside a segment no place is farther outside than
     /// it is from the segment, and it gets no farther than by its deviation across, to the worse side.
-    pub(super) fn beyond(&self, piece: &BodyPiece, taken: &Taken, points: &[Point], segment: Segment) -> f64 {
+    pub(super) fn beyond(&self, piece: &BodyPiece, taken: &Deductions, points: &[Point], segment: Segment) -> f64 {
         let [s, e] = segment;
         let size = length([e[0] - s[0], e[1] - s[1]]);
         let u = [(e[0] - s[0]) / size, (e[1] - s[1]) / size];
@@ -50,7 +57,7 @@ impl SweptVehicle<'_> {
     pub(super) fn kept_aslant(
         &self,
         piece: &BodyPiece,
-        taken: &Taken,
+        taken: &Deductions,
         hull: &[Point],
         segment: Segment,
         way: Point,

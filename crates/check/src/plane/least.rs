@@ -1,11 +1,11 @@
 //! The search for the place of a piece that has the least room. Pieces are halved until each one is decided.
 
+use super::deductions::{Deductions, ROUNDING_M};
 use super::piece::BodyPiece;
-use super::taken::{ROUNDING_M, Taken};
 use crate::TOLERANCE_M;
 use crate::areas::Boundary;
 use crate::hull::{Segment, hull, way};
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::vector::{Point, length};
 use netcert_base::watch;
 
@@ -76,7 +76,7 @@ impl Search<'_> {
     }
 
     /// The distance that decides without a direction, metres.
-    fn needed(&self, taken: &Taken) -> f64 {
+    fn needed(&self, taken: &Deductions) -> f64 {
         taken.needed(self.target, self.strict)
     }
 
@@ -104,7 +104,7 @@ impl Search<'_> {
 /// A piece as the boundaries see it.
 struct Seen {
     piece: BodyPiece,
-    taken: Taken,
+    taken: Deductions,
     /// The hull of its nominal places.
     points: Vec<Point>,
     /// Whether turned directions are worth their while.

@@ -50,15 +50,15 @@
 //! deviation across that segment together.
 
 mod clearance;
+mod deductions;
 mod least;
 mod piece;
-mod taken;
 
 use std::ops::Range;
 
 use self::least::{Claim, WORSE_M};
 use self::piece::BodyPiece;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::vector::Point;
 
 /// The place where a claim fails by most in an area.

@@ -1,7 +1,7 @@
 //! A piece of a body in a part of a step, and its halves.
 
 use crate::feet::point;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::vector::{Point, length};
 
 /// A piece of a body, from `a[0]` to `a[1]` ahead of its axle and from `c[0]` to `c[1]` to its left, in a part of a step.

@@ -3,16 +3,23 @@
 //! A file that was cut between two rows cannot be told from a shorter one. A cut within a row is found: a cell is missing, a
 //! quotation mark is open, or the last number is not followed by the end of a line.
 
-use crate::columns::{Column, Record, columns};
+use crate::columns::{EvidenceColumn, FileRecord, columns};
 use crate::error::Failure;
 use crate::shape;
 
 /// Columns of words. A last cell of any other kind needs the end of its line, as its last digits may be missing.
-const WORDS: [Column; 7] =
-    [Column::Source, Column::Licence, Column::Name, Column::Note, Column::Vehicle, Column::Date, Column::Geometry];
+const WORDS: [EvidenceColumn; 7] = [
+    EvidenceColumn::Source,
+    EvidenceColumn::Licence,
+    EvidenceColumn::Name,
+    EvidenceColumn::Note,
+    EvidenceColumn::Vehicle,
+    EvidenceColumn::Date,
+    EvidenceColumn::Geometry,
+];
 
 /// All records of a file.
-pub(super) fn records(bytes: &[u8]) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(bytes: &[u8]) -> Result<Vec<FileRecord>, Failure> {
     let text = super::text(bytes)?;
     closed(text)?;
     let mut reader =
@@ -30,11 +37,11 @@ pub(super) fn records(bytes: &[u8]) -> Result<Vec<Record>, Failure> {
     Ok(records)
 }
 
-fn record(number: u64, columns: &[Option<Column>], row: &csv::StringRecord) -> Record {
-    let mut record = Record::new(number);
+fn record(number: u64, columns: &[Option<EvidenceColumn>], row: &csv::StringRecord) -> FileRecord {
+    let mut record = FileRecord::new(number);
     for (column, cell) in columns.iter().zip(row) {
         match column {
-            Some(Column::Geometry) if !cell.trim().is_empty() => record.set_shape(shape::from_text(cell)),
+            Some(EvidenceColumn::Geometry) if !cell.trim().is_empty() => record.set_shape(shape::from_text(cell)),
             Some(column) => record.set(*column, cell),
             None => {}
         }
@@ -66,7 +73,7 @@ fn closed(text: &str) -> Result<(), Failure> {
 }
 
 /// Checks that a number at the very end of the file is whole.
-fn ended(text: &str, last: Option<Column>, record: Option<&Record>) -> Result<(), Failure> {
+fn ended(text: &str, last: Option<EvidenceColumn>, record: Option<&FileRecord>) -> Result<(), Failure> {
     let (Some(last), Some(record)) = (last, record) else { return Ok(()) };
     if text.ends_with(['\n', '\r', '"']) || WORDS.contains(&last) || record.text(last).is_none() {
         return Ok(());

@@ -3,12 +3,12 @@
 use geojson::{Feature, GeoJson, GeometryValue, Position, feature::Id};
 use serde_json::Value;
 
-use crate::columns::{Column, Record, columns, is_geometry, real_text};
+use crate::columns::{EvidenceColumn, FileRecord, columns, is_geometry, real_text};
 use crate::error::Failure;
 use crate::shape::{Shape, Xy};
 
 /// All records of a file.
-pub(super) fn records(bytes: &[u8]) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(bytes: &[u8]) -> Result<Vec<FileRecord>, Failure> {
     let text = super::text(bytes)?;
     let features = match sequence(text)? {
         Some(features) => features,
@@ -72,19 +72,19 @@ fn check_names(features: &[Numbered]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn record(number: u64, feature: &Feature) -> Record {
-    let mut record = Record::new(number);
+fn record(number: u64, feature: &Feature) -> FileRecord {
+    let mut record = FileRecord::new(number);
     for (name, value) in feature.properties.iter().flatten() {
-        let Some(column) = Column::named(name).filter(|_| !is_geometry(name)) else { continue };
+        let Some(column) = EvidenceColumn::named(name).filter(|_| !is_geometry(name)) else { continue };
         match scalar(value) {
             Ok(text) => record.set(column, &text),
             Err(what) => record.fault(column, what),
         }
     }
-    if record.text(Column::Id).is_none() {
+    if record.text(EvidenceColumn::Id).is_none() {
         match &feature.id {
-            Some(Id::String(id)) => record.set(Column::Id, id),
-            Some(Id::Number(id)) => record.set(Column::Id, &id.to_string()),
+            Some(Id::String(id)) => record.set(EvidenceColumn::Id, id),
+            Some(Id::Number(id)) => record.set(EvidenceColumn::Id, &id.to_string()),
             None => {}
         }
     }

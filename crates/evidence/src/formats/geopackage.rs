@@ -9,13 +9,13 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Connection as _, Row as _};
 
 use super::reference::Transform;
-use crate::columns::{Column, Record, columns, is_geometry, real_text};
+use crate::columns::{EvidenceColumn, FileRecord, columns, is_geometry, real_text};
 use crate::error::Failure;
 use crate::shape::from_geopackage;
 use netcert_files::sqlite;
 
 /// All records of a file, table after table, numbered through.
-pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(path: &Path) -> Result<Vec<FileRecord>, Failure> {
     whole(path)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build()?;
     runtime.block_on(async {
@@ -56,7 +56,7 @@ fn failed(error: &sqlx::Error) -> Failure {
     Failure::File(format!("no readable GeoPackage: {error}; was the file written to its end?"))
 }
 
-async fn all(connection: &mut SqliteConnection) -> Result<Vec<Record>, Failure> {
+async fn all(connection: &mut SqliteConnection) -> Result<Vec<FileRecord>, Failure> {
     let mut tables = tables(connection, "features").await?;
     if tables.is_empty() {
         tables = self::tables(connection, "attributes").await?;
@@ -82,7 +82,7 @@ async fn tables(connection: &mut SqliteConnection, kind: &str) -> Result<Vec<Str
 struct Table {
     name: String,
     /// Its columns: the name in the file, and the meaning.
-    columns: Vec<(String, Column)>,
+    columns: Vec<(String, EvidenceColumn)>,
     /// The number of the reference system, and the way from there to WGS 84.
     reference: Option<(i32, Transform)>,
 }
@@ -97,13 +97,13 @@ impl Table {
 
     /// The statement that gives the type and the value of each cell.
     fn statement(&self) -> String {
-        let cell = |(name, _): &(String, Column)| format!("typeof({0}), {0}", quoted(name));
+        let cell = |(name, _): &(String, EvidenceColumn)| format!("typeof({0}), {0}", quoted(name));
         let cells: Vec<String> = self.columns.iter().map(cell).collect();
         let cells = if cells.is_empty() { "1".to_owned() } else { cells.join(", ") };
         format!("SELECT {cells} FROM {}", quoted(&self.name))
     }
 
-    async fn read(&self, connection: &mut SqliteConnection, records: &mut Vec<Record>) -> Result<(), sqlx::Error> {
+    async fn read(&self, connection: &mut SqliteConnection, records: &mut Vec<FileRecord>) -> Result<(), sqlx::Error> {
         for row in sqlx::query(AssertSqlSafe(self.statement())).fetch_all(connection).await? {
             let record = self.record(records.len() as u64 + 1, &row)?;
             records.push(record);
@@ -111,24 +111,26 @@ impl Table {
         Ok(())
     }
 
-    fn record(&self, number: u64, row: &SqliteRow) -> Result<Record, sqlx::Error> {
-        let mut record = Record::new(number);
+    fn record(&self, number: u64, row: &SqliteRow) -> Result<FileRecord, sqlx::Error> {
+        let mut record = FileRecord::new(number);
         for (at, (_, column)) in self.columns.iter().enumerate() {
             let (kind, cell) = (row.try_get_unchecked::<String, _>(2 * at)?, 2 * at + 1);
             match (kind.as_str(), column) {
                 ("null", _) => {}
                 ("integer", _) => record.set(*column, &row.try_get_unchecked::<i64, _>(cell)?.to_string()),
                 ("real", _) => record.set(*column, &real_text(row.try_get_unchecked(cell)?)),
-                ("blob", Column::Geometry) => self.add_shape(&mut record, row.try_get_unchecked(cell)?),
+                ("blob", EvidenceColumn::Geometry) => self.add_shape(&mut record, row.try_get_unchecked(cell)?),
                 ("blob", _) => record.fault(*column, "is binary; give a text or number"),
-                (_, Column::Geometry) => record.fault(*column, "is no geometry of a GeoPackage; write the file again"),
+                (_, EvidenceColumn::Geometry) => {
+                    record.fault(*column, "is no geometry of a GeoPackage; write the file again");
+                }
                 _ => record.set(*column, row.try_get_unchecked(cell)?),
             }
         }
         Ok(record)
     }
 
-    fn add_shape(&self, record: &mut Record, blob: &[u8]) {
+    fn add_shape(&self, record: &mut FileRecord, blob: &[u8]) {
         let read = || {
             let (srs, mut shape) = from_geopackage(blob)?;
             let Some((expected, transform)) = &self.reference else { return Err(NOT_REGISTERED.to_owned()) };
@@ -169,14 +171,14 @@ async fn known_columns(
     connection: &mut SqliteConnection,
     table: &str,
     geometry: Option<&str>,
-) -> Result<Vec<(String, Column)>, Failure> {
+) -> Result<Vec<(String, EvidenceColumn)>, Failure> {
     let names = "SELECT name, pk FROM pragma_table_info(?)";
     let names: Vec<(String, i64)> =
         sqlx::query_as(names).bind(table).fetch_all(connection).await.map_err(|error| failed(&error))?;
     let meaning = names.iter().map(|(name, key)| match name.as_str() {
         name if Some(name) == geometry => "geometry",
         name if geometry.is_some() && is_geometry(name) => "_copy",
-        name if *key > 0 && Column::named(name).is_none() => "_key",
+        name if *key > 0 && EvidenceColumn::named(name).is_none() => "_key",
         name => name,
     });
     let columns = columns(meaning)?;

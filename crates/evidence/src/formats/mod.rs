@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::columns::Record;
+use super::columns::FileRecord;
 use super::error::Failure;
 
 /// A format.
@@ -27,7 +27,7 @@ enum Format {
 const HEAD_BYTES: u64 = 256;
 
 /// All records of a file, in their order.
-pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(path: &Path) -> Result<Vec<FileRecord>, Failure> {
     let mut file = File::open(path)?;
     let mut head = Vec::new();
     Read::by_ref(&mut file).take(HEAD_BYTES).read_to_end(&mut head)?;
@@ -49,7 +49,7 @@ pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
 }
 
 /// All records of a text in GeoJSON.
-pub(super) fn geojson(bytes: &[u8]) -> Result<Vec<Record>, Failure> {
+pub(super) fn geojson(bytes: &[u8]) -> Result<Vec<FileRecord>, Failure> {
     geojson::records(bytes)
 }
 

@@ -2,13 +2,13 @@
 
 use geo::{Contains as _, LineString, Point, Polygon};
 
-use super::index::Index;
+use super::index::MatchingIndex;
 use super::{Found, Match, unmatched};
 use crate::osm::{LonLat, NodeId};
-use crate::row::{Row, Value};
+use crate::row::{MeasurementRow, Value};
 
 /// The junctions inside the row's polygon.
-pub(super) fn matched(index: &Index<'_>, row: &Row) -> Found {
+pub(super) fn matched(index: &MatchingIndex<'_>, row: &MeasurementRow) -> Found {
     let Value::Polygon(rings) = &row.value else { return unmatched("no polygon") };
     let polygon = polygon(rings);
     let Some(outer) = rings.first() else { return unmatched("no polygon") };
@@ -22,7 +22,7 @@ pub(super) fn matched(index: &Index<'_>, row: &Row) -> Found {
 }
 
 /// A junction that the row names must lie on its surface.
-pub(super) fn of_node(row: &Row, node: NodeId, at: LonLat) -> Found {
+pub(super) fn of_node(row: &MeasurementRow, node: NodeId, at: LonLat) -> Found {
     let Value::Polygon(rings) = &row.value else { return unmatched("no polygon") };
     if !polygon(rings).contains(&point(at)) {
         return unmatched(format!("node {node} does not lie on the surface"));

@@ -4,9 +4,9 @@
 //! mean counts: noise of some metres turns a short segment of a line by more than any road bends.
 
 use super::directed;
-use super::index::{Index, RoadPiece};
+use super::index::{MatchingIndex, RoadPiece};
 use super::names::Fit;
-use super::track::{Track, turn_deg};
+use super::track::{MeasuredLine, turn_deg};
 use crate::network::EdgeNo;
 use crate::osm::{LonLat, NodeId};
 use crate::row::Along;
@@ -30,7 +30,7 @@ pub(super) const GOES_ON_M: f64 = 5.0;
 
 /// A place on the piece that the line passes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
+pub(super) struct PassedPlace {
     /// Where on the line, metres.
     pub(super) on_line_m: f64,
     /// Where on the piece, metres in the order of its way.
@@ -46,7 +46,7 @@ pub(super) struct Candidate<'i> {
     /// The edges that would be meant; at least one.
     pub(super) edges: Vec<EdgeNo>,
     /// Sorted along the line; at least one.
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<PassedPlace>,
     /// Share of the piece's length that the line covers.
     pub(super) covered: f64,
     /// Whether the line runs in the order of the piece's way.
@@ -57,20 +57,20 @@ pub(super) struct Candidate<'i> {
 impl<'i> Candidate<'i> {
     /// Measures a piece; `None` if the line does not run along it, or in a direction that the piece does not have.
     pub(super) fn measured(
-        index: &Index<'_>,
+        index: &MatchingIndex<'_>,
         piece: &'i RoadPiece,
         name: Fit,
         origin: LonLat,
-        drawn: &Track,
+        drawn: &MeasuredLine,
         along: Along,
     ) -> Option<Self> {
-        let track = Track::new(origin, index.line(piece).iter().copied());
+        let track = MeasuredLine::new(origin, index.line(piece).iter().copied());
         let length_m = track.length_m();
         let count = (length_m / STEP_M).ceil().max(2.0) as usize;
         let all = (0..count).map(|i| (i as f64 + 0.5) / count as f64 * length_m);
-        let passed: Vec<Sample> = all.filter_map(|on_piece_m| sample(&track, on_piece_m, drawn)).collect();
+        let passed: Vec<PassedPlace> = all.filter_map(|on_piece_m| sample(&track, on_piece_m, drawn)).collect();
         let ahead = 2 * passed.iter().filter(|sample| sample.turn_deg.abs() < 90.0).count() >= passed.len();
-        let mut samples: Vec<Sample> = passed.into_iter().filter_map(|sample| sample.folded(ahead)).collect();
+        let mut samples: Vec<PassedPlace> = passed.into_iter().filter_map(|sample| sample.folded(ahead)).collect();
         samples.sort_by(|a, b| a.on_line_m.total_cmp(&b.on_line_m));
         let turn_deg = samples.iter().map(|sample| sample.turn_deg).sum::<f64>() / samples.len() as f64;
         let edges = directed(if ahead { piece.edges } else { [piece.edges[1], piece.edges[0]] }, along);
@@ -106,13 +106,13 @@ impl<'i> Candidate<'i> {
         }
         let after = self.samples.partition_point(|sample| sample.on_line_m < on_line_m);
         let beside = [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|i| self.samples.get(i));
-        let gap = |sample: &&Sample| (sample.on_line_m - on_line_m).abs();
+        let gap = |sample: &&PassedPlace| (sample.on_line_m - on_line_m).abs();
         beside.min_by(|a, b| gap(a).total_cmp(&gap(b))).map(|sample| sample.distance_m)
     }
 
     /// Metres from the ends of the piece's covered part to the ends of the piece: where the line comes, and where it leaves.
     pub(super) fn left_open_m(&self) -> [f64; 2] {
-        let on = |sample: &Sample| sample.on_piece_m;
+        let on = |sample: &PassedPlace| sample.on_piece_m;
         let least = self.samples.iter().map(on).fold(f64::INFINITY, f64::min);
         let most = self.samples.iter().map(on).fold(0.0, f64::max);
         if self.ahead { [least, self.length_m - most] } else { [self.length_m - most, least] }
@@ -125,21 +125,21 @@ impl<'i> Candidate<'i> {
     }
 
     /// For messages: `way 12 (edge 34), 5.6 m away`.
-    pub(super) fn told(&self, index: &Index<'_>) -> String {
+    pub(super) fn told(&self, index: &MatchingIndex<'_>) -> String {
         format!("{}, {:.1} m away", index.told(self.piece), self.mean_m())
     }
 }
 
-fn sample(track: &Track, on_piece_m: f64, drawn: &Track) -> Option<Sample> {
+fn sample(track: &MeasuredLine, on_piece_m: f64, drawn: &MeasuredLine) -> Option<PassedPlace> {
     let foot = drawn.foot(track.at(on_piece_m));
     if foot.distance_m > REACH_M || foot.beyond_m > BEYOND_M {
         return None;
     }
     let turn_deg = turn_deg(drawn.chord(foot.along_m, CHORD_M), track.chord(on_piece_m, CHORD_M));
-    Some(Sample { on_line_m: foot.along_m, on_piece_m, distance_m: foot.distance_m, turn_deg })
+    Some(PassedPlace { on_line_m: foot.along_m, on_piece_m, distance_m: foot.distance_m, turn_deg })
 }
 
-impl Sample {
+impl PassedPlace {
     /// The sample with its turn from the line's direction, or from the opposite one; `None` if it turns off.
     fn folded(self, ahead: bool) -> Option<Self> {
         let opposite = if self.turn_deg > 0.0 { self.turn_deg - 180.0 } else { self.turn_deg + 180.0 };

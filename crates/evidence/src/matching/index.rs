@@ -32,7 +32,7 @@ type Segment = GeomWithData<Rectangle<[f64; 2]>, u32>;
 type Junction = GeomWithData<[f64; 2], NodeId>;
 
 /// The network, prepared for matching.
-pub(super) struct Index<'n> {
+pub(super) struct MatchingIndex<'n> {
     pub(super) network: &'n Network,
     /// In the order of the edges.
     pub(super) pieces: Vec<RoadPiece>,
@@ -42,7 +42,7 @@ pub(super) struct Index<'n> {
     nodes: FxHashMap<NodeId, Node>,
 }
 
-impl<'n> Index<'n> {
+impl<'n> MatchingIndex<'n> {
     pub(super) fn new(network: &'n Network) -> Self {
         let pieces = pieces(network);
         let mut nodes: FxHashMap<NodeId, Node> = FxHashMap::default();

@@ -1,13 +1,13 @@
 //! Rows whose place is a drawn line: the edges that it covers.
 
 use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M, STEP_M};
-use super::index::Index;
+use super::index::MatchingIndex;
 use super::names::{Fit, RowName, told};
-use super::rivals::{Beside, Standing, followed, standing};
-use super::track::Track;
+use super::rivals::{Beside, RivalStanding, followed, standing};
+use super::track::MeasuredLine;
 use super::{Found, Match, TOLD, unmatched};
 use crate::osm::LonLat;
-use crate::row::Row;
+use crate::row::MeasurementRow;
 
 /// An edge is meant from this covered share of its length on.
 const COVERED: f64 = 0.6;
@@ -17,9 +17,9 @@ const EXPLAINED: f64 = 0.6;
 const LONGEST_M: f64 = 100_000.0;
 
 /// The edges along a line.
-pub(super) fn matched(index: &Index<'_>, row: &Row, line: &[LonLat]) -> Found {
+pub(super) fn matched(index: &MatchingIndex<'_>, row: &MeasurementRow, line: &[LonLat]) -> Found {
     let Some(&origin) = line.first() else { return unmatched("the line has no positions") };
-    let drawn = Track::new(origin, line.iter().copied());
+    let drawn = MeasuredLine::new(origin, line.iter().copied());
     if drawn.length_m() > LONGEST_M {
         return unmatched("the line is longer than 100 km; cut it");
     }
@@ -36,19 +36,19 @@ pub(super) fn matched(index: &Index<'_>, row: &Row, line: &[LonLat]) -> Found {
     decided(index, &all, drawn.length_m())
 }
 
-fn decided(index: &Index<'_>, all: &[Candidate<'_>], line_m: f64) -> Found {
+fn decided(index: &MatchingIndex<'_>, all: &[Candidate<'_>], line_m: f64) -> Found {
     let (follows, beside) = (followed(all, line_m), Beside::new(all));
     let mut edges = Vec::new();
     let mut beaten = vec![false; all.len()];
     for (i, candidate) in all.iter().enumerate().filter(|(_, candidate)| candidate.name != Fit::Differs) {
         let covered = candidate.covered >= COVERED && !candidate.by_chance(line_m);
         match standing(all, &follows, &beside, i) {
-            Standing::Alone if covered => edges.extend(&candidate.edges),
-            Standing::Ties(others) if covered => {
+            RivalStanding::Alone if covered => edges.extend(&candidate.edges),
+            RivalStanding::Ties(others) if covered => {
                 let all = std::iter::once(i).chain(others).map(|i| &all[i]);
                 return Err(Match::Ambiguous(format!("could be {}", listed(index, all, " or "))));
             }
-            Standing::Beaten => beaten[i] = true,
+            RivalStanding::Beaten => beaten[i] = true,
             _ => {}
         }
     }
@@ -67,7 +67,7 @@ fn decided(index: &Index<'_>, all: &[Candidate<'_>], line_m: f64) -> Found {
 }
 
 /// Why no edge is meant.
-fn nothing(index: &Index<'_>, left: &[&Candidate<'_>]) -> String {
+fn nothing(index: &MatchingIndex<'_>, left: &[&Candidate<'_>]) -> String {
     let other = left.iter().filter(|candidate| candidate.name == Fit::Differs && candidate.covered >= COVERED);
     let other: Vec<String> = other
         .take(TOLD)
@@ -104,6 +104,6 @@ fn explained(left: &[&Candidate<'_>], line_m: f64) -> f64 {
     sum_m / line_m
 }
 
-fn listed<'c>(index: &Index<'_>, all: impl Iterator<Item = &'c Candidate<'c>>, or: &str) -> String {
+fn listed<'c>(index: &MatchingIndex<'_>, all: impl Iterator<Item = &'c Candidate<'c>>, or: &str) -> String {
     super::listed(&all.map(|candidate| candidate.told(index)).collect::<Vec<_>>(), or)
 }

@@ -5,9 +5,9 @@
 
 mod area;
 mod candidate;
+mod ids;
 mod index;
 mod line;
-mod named;
 mod names;
 mod point;
 mod rivals;
@@ -15,10 +15,10 @@ mod track;
 
 use rayon::prelude::*;
 
-use super::row::{Along, Place, Row};
+use super::row::{Along, MeasurementRow, Place};
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
-use index::Index;
+use index::MatchingIndex;
 
 /// What a row means.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,19 +42,19 @@ pub enum Match {
 
 /// Matches rows to the network. The result has the order of the rows.
 #[must_use]
-pub fn match_rows(network: &Network, rows: &[Row]) -> Vec<Match> {
-    let index = Index::new(network);
+pub fn match_rows(network: &Network, rows: &[MeasurementRow]) -> Vec<Match> {
+    let index = MatchingIndex::new(network);
     rows.par_iter().map(|row| match_row(&index, row).unwrap_or_else(|other| other)).collect()
 }
 
 /// A match, or as `Err` what stands in its way. Both are answers.
 type Found = Result<Match, Match>;
 
-fn match_row(index: &Index<'_>, row: &Row) -> Found {
+fn match_row(index: &MatchingIndex<'_>, row: &MeasurementRow) -> Found {
     match &row.place {
-        Place::Edge(id) => named::edge(index, row, *id),
-        Place::Way { way_id, nodes } => named::way(index, row, *way_id, *nodes),
-        Place::Junction { node, edges } => named::junction(index, row, *node, *edges),
+        Place::Edge(id) => ids::edge(index, row, *id),
+        Place::Way { way_id, nodes } => ids::way(index, row, *way_id, *nodes),
+        Place::Junction { node, edges } => ids::junction(index, row, *node, *edges),
         Place::Line(line) => line::matched(index, row, line),
         Place::Point(at) => point::matched(index, row, *at),
         Place::Polygon(_) => area::matched(index, row),

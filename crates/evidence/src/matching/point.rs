@@ -1,20 +1,20 @@
 //! Rows whose place is a position: the nearest road, or for a kerb the nearest junction.
 
 use super::candidate::REACH_M;
-use super::index::{Index, RoadPiece};
+use super::index::{MatchingIndex, RoadPiece};
 use super::names::{Fit, RowName, told};
 use super::rivals::could_be_meant;
-use super::track::Track;
+use super::track::MeasuredLine;
 use super::{Found, Match, directed, listed, unmatched};
 use crate::network::{EdgeNo, offset_m};
 use crate::osm::{LonLat, NodeId};
-use crate::row::{Quantity, Row};
+use crate::row::{MeasurementRow, Quantity};
 
 /// Greatest distance of a kerb's position from the node of its junction, metres.
 const JUNCTION_M: f64 = 25.0;
 
 /// The edges or the junction at a position.
-pub(super) fn matched(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
+pub(super) fn matched(index: &MatchingIndex<'_>, row: &MeasurementRow, at: LonLat) -> Found {
     if row.quantity == Quantity::KerbRadius { junction(index, at) } else { road(index, row, at) }
 }
 
@@ -26,14 +26,14 @@ struct Near<'i> {
     name: Fit,
 }
 
-fn road(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
+fn road(index: &MatchingIndex<'_>, row: &MeasurementRow, at: LonLat) -> Found {
     let row_name = RowName::of(row.name.as_deref());
     let mut all: Vec<Near<'_>> = index
         .pieces_near(&[at], REACH_M)
         .into_iter()
         .map(|piece| {
             let piece = &index.pieces[piece as usize];
-            let distance_m = Track::new(at, index.line(piece).iter().copied()).foot([0.0, 0.0]).distance_m;
+            let distance_m = MeasuredLine::new(at, index.line(piece).iter().copied()).foot([0.0, 0.0]).distance_m;
             let name = row_name.fit(index.network, index.road(piece));
             Near { piece, distance_m, edges: directed(piece.edges, row.along), name }
         })
@@ -55,7 +55,7 @@ fn road(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
     decided(&told_all, || Match::Edges(best.edges.clone()))
 }
 
-fn junction(index: &Index<'_>, at: LonLat) -> Found {
+fn junction(index: &MatchingIndex<'_>, at: LonLat) -> Found {
     let distance_m = |place: LonLat| offset_m(at, place).into_iter().fold(0.0, f64::hypot);
     let near = index.junctions_near(&[at], JUNCTION_M).into_iter().map(|(id, place)| (distance_m(place), id));
     let mut all: Vec<(f64, NodeId)> = near.filter(|near| near.0 <= JUNCTION_M).collect();

@@ -27,7 +27,7 @@ pub(super) fn could_be_meant(distance_m: f64, best_m: f64) -> bool {
 
 /// How a candidate stands beside its rivals.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum RivalStanding {
     /// No other road could be meant.
     Alone,
     /// Others could be meant as well: their numbers.
@@ -135,7 +135,7 @@ impl Beside {
 }
 
 /// How a candidate stands. Of roads with the row's name only each other are rivals.
-pub(super) fn standing(all: &[Candidate<'_>], follows: &[bool], beside: &Beside, i: usize) -> Standing {
+pub(super) fn standing(all: &[Candidate<'_>], follows: &[bool], beside: &Beside, i: usize) -> RivalStanding {
     watch::poll();
     let near = beside.at(all[i].stretch());
     let rivals = |named: Option<Fit>, followed: bool| -> Vec<usize> {
@@ -144,17 +144,17 @@ pub(super) fn standing(all: &[Candidate<'_>], follows: &[bool], beside: &Beside,
     };
     let own = (all[i].name == Fit::Same).then_some(Fit::Same);
     if own.is_none() && could_any(all, i, &rivals(Some(Fit::Same), true)).is_some() {
-        return Standing::Beaten;
+        return RivalStanding::Beaten;
     }
     let (near, leaving) = (rivals(own, true), rivals(own, false));
     let beside = |rivals: &[usize]| rivals.iter().copied().filter(|&j| shared(&all[i], &[&all[j]]).is_some()).collect();
     let apart = could_any(all, i, &leaving).filter(|[own_m, rival_m]| rival_m < own_m);
     match could_any(all, i, &near) {
-        _ if apart.is_some() => Standing::Ties(beside(&leaving)),
-        None => Standing::Alone,
-        Some([own_m, rival_m]) if !follows[i] && rival_m <= own_m => Standing::Beaten,
-        Some([own_m, rival_m]) if !could_be_meant(own_m, rival_m) => Standing::Beaten,
-        Some(_) => Standing::Ties(beside(&near)),
+        _ if apart.is_some() => RivalStanding::Ties(beside(&leaving)),
+        None => RivalStanding::Alone,
+        Some([own_m, rival_m]) if !follows[i] && rival_m <= own_m => RivalStanding::Beaten,
+        Some([own_m, rival_m]) if !could_be_meant(own_m, rival_m) => RivalStanding::Beaten,
+        Some(_) => RivalStanding::Ties(beside(&near)),
     }
 }
 

@@ -12,7 +12,7 @@ const TOGETHER: usize = 32;
 const ROUNDING_M: f64 = 1e-3;
 
 /// A line; at least one point.
-pub(super) struct Track {
+pub(super) struct MeasuredLine {
     points: Vec<[f64; 2]>,
     /// Distance of each point along the line, metres.
     along_m: Vec<f64>,
@@ -22,7 +22,7 @@ pub(super) struct Track {
 
 /// The point of a line nearest to another point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Foot {
+pub(super) struct NearestPoint {
     /// Distance from the other point, metres.
     pub(super) distance_m: f64,
     /// Distance along the line, metres.
@@ -31,7 +31,7 @@ pub(super) struct Foot {
     pub(super) beyond_m: f64,
 }
 
-impl Track {
+impl MeasuredLine {
     pub(super) fn new(origin: LonLat, line: impl Iterator<Item = LonLat>) -> Self {
         let points: Vec<[f64; 2]> = line.map(|at| offset_m(origin, at)).collect();
         let mut sum = 0.0;
@@ -72,9 +72,10 @@ impl Track {
     }
 
     /// The nearest point to `p`; of several, the first.
-    pub(super) fn foot(&self, p: [f64; 2]) -> Foot {
+    pub(super) fn foot(&self, p: [f64; 2]) -> NearestPoint {
         let first = self.points[0];
-        let at_start = Foot { distance_m: (p[0] - first[0]).hypot(p[1] - first[1]), along_m: 0.0, beyond_m: 0.0 };
+        let at_start =
+            NearestPoint { distance_m: (p[0] - first[0]).hypot(p[1] - first[1]), along_m: 0.0, beyond_m: 0.0 };
         let away_m = |[low, high]: [[f64; 2]; 2]| {
             let beyond = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
             beyond(0).hypot(beyond(1)) - ROUNDING_M
@@ -83,7 +84,8 @@ impl Track {
             let first = TOGETHER * number;
             (first..(first + TOGETHER).min(self.points.len() - 1)).map(|i| self.foot_on(i, p))
         };
-        let nearer = |best: Foot, next: Foot| if next.distance_m < best.distance_m { next } else { best };
+        let nearer =
+            |best: NearestPoint, next: NearestPoint| if next.distance_m < best.distance_m { next } else { best };
         let boxes = self.boxes.iter().map(|&corners| away_m(corners)).enumerate();
         let nearest = boxes.clone().min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(k, _)| of_box(k).reduce(nearer));
         let Some(nearest) = nearest else { return at_start };
@@ -92,7 +94,7 @@ impl Track {
         near.flat_map(|(number, _)| of_box(number)).reduce(nearer).unwrap_or(nearest)
     }
 
-    fn foot_on(&self, i: usize, p: [f64; 2]) -> Foot {
+    fn foot_on(&self, i: usize, p: [f64; 2]) -> NearestPoint {
         let (a, b) = (self.points[i], self.points[i + 1]);
         let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
         let length_m = self.along_m[i + 1] - self.along_m[i];
@@ -100,7 +102,7 @@ impl Track {
         let on_m = along_m.clamp(0.0, length_m);
         let share = if length_m > 0.0 { on_m / length_m } else { 0.0 };
         let ends = (i == 0 && along_m < 0.0) || (i + 2 == self.points.len() && along_m > length_m);
-        Foot {
+        NearestPoint {
             distance_m: (v[0] - share * u[0]).hypot(v[1] - share * u[1]),
             along_m: self.along_m[i] + on_m,
             beyond_m: if ends { (along_m - on_m).abs() } else { 0.0 },
@@ -118,9 +120,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn through(points: impl Iterator<Item = [f64; 2]>) -> Track {
+    fn through(points: impl Iterator<Item = [f64; 2]>) -> MeasuredLine {
         let places = points.map(|[x, y]| LonLat { lon_e7: (x * 90.0) as i32, lat_e7: (y * 90.0) as i32 });
-        Track::new(LonLat { lon_e7: 0, lat_e7: 0 }, places)
+        MeasuredLine::new(LonLat { lon_e7: 0, lat_e7: 0 }, places)
     }
 
     proptest! {

@@ -56,7 +56,7 @@ fn every_quantity_has_its_place_and_value() {
     assert_eq!(rows[6].value, Value::Vehicle("EU-SEMI16.5".to_owned()));
     assert_eq!(rows[5].value, Value::Tonnes(7.5));
     assert_eq!(rows[0].licence.as_deref(), Some("CC0"));
-    let lower: Vec<Option<f64>> = rows.iter().map(super::super::Row::lower).collect();
+    let lower: Vec<Option<f64>> = rows.iter().map(super::super::MeasurementRow::lower).collect();
     assert_eq!(
         lower,
         [Some(7.5), Some(3.5), Some(4.0 - 1.64 * 0.5), Some(0.0), Some(4.1 - 1.64 * 0.1), Some(7.5), None, None]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::super::{Row, read};
+use super::super::{MeasurementRow, read};
 use super::formats::table;
 use super::write::{Table, csv, geojson, geojson_lines, geopackage, temporary};
 
@@ -59,7 +59,7 @@ fn damaged(name: &str, write: impl Fn(&Table, &Path), step: usize, mask: u8) {
         changed[at] ^= mask;
         std::fs::write(&path, changed).unwrap();
         let whole = std::panic::catch_unwind(|| {
-            let _: Result<Vec<Row>, _> = read(&path);
+            let _: Result<Vec<MeasurementRow>, _> = read(&path);
         });
         assert!(whole.is_ok(), "{name}: byte {at}");
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::super::{Row, read};
+use super::super::{MeasurementRow, read};
 use super::write::{Drawn, Table, csv, geojson, geojson_lines, geopackage, read_as, refusal, temporary};
 
 /// Rows of every kind. Ids of edges have 63 bits.
@@ -26,7 +26,7 @@ pub(super) fn table() -> Table {
 }
 
 /// The rows of a file that `write` makes, numbered from 1.
-fn through(name: &str, write: impl Fn(&Table, &Path)) -> Vec<Row> {
+fn through(name: &str, write: impl Fn(&Table, &Path)) -> Vec<MeasurementRow> {
     let (_folder, path) = temporary(name);
     write(&table(), &path);
     let mut rows = read(&path).unwrap();

@@ -1,11 +1,11 @@
 //! Rows whose place is a drawn line.
 
-use super::super::{Along, Row};
-use super::drawn::{Drawing, line, row, told};
+use super::super::{Along, MeasurementRow};
+use super::drawing::{Drawing, line, row, told};
 use crate::network::Network;
 
-fn named(row: Row, name: &str) -> Row {
-    Row { name: Some(name.to_owned()), ..row }
+fn named(row: MeasurementRow, name: &str) -> MeasurementRow {
+    MeasurementRow { name: Some(name.to_owned()), ..row }
 }
 
 /// A road of three edges with side roads, to the east.
@@ -42,8 +42,8 @@ fn a_line_means_the_edges_that_it_covers() {
 fn a_direction_is_that_of_the_drawn_line() {
     let network = avenue();
     let against = line(&[[205.0, 1.0], [98.0, 1.0]]);
-    assert_eq!(told(&network, &Row { along: Along::Forward, ..against.clone() }), "1:3-2");
-    assert_eq!(told(&network, &Row { along: Along::Backward, ..against }), "1:2-3");
+    assert_eq!(told(&network, &MeasurementRow { along: Along::Forward, ..against.clone() }), "1:3-2");
+    assert_eq!(told(&network, &MeasurementRow { along: Along::Backward, ..against }), "1:2-3");
 }
 
 #[test]
@@ -101,8 +101,8 @@ fn two_carriageways_are_told_apart_by_direction() {
         .network();
     let along = line(&[[0.0, 4.0], [200.0, 4.0]]);
     assert!(told(&network, &along).starts_with("ambiguous"));
-    assert_eq!(told(&network, &Row { along: Along::Forward, ..along.clone() }), "1:1-2");
-    assert_eq!(told(&network, &Row { along: Along::Backward, ..along }), "2:3-4");
+    assert_eq!(told(&network, &MeasurementRow { along: Along::Forward, ..along.clone() }), "1:1-2");
+    assert_eq!(told(&network, &MeasurementRow { along: Along::Backward, ..along }), "2:3-4");
 }
 
 /// A ramp leaves a main road at a small angle, beside a short edge of it.

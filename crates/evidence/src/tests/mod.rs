@@ -4,7 +4,7 @@
 
 mod cells;
 mod cuts;
-mod drawn;
+mod drawing;
 mod faults;
 mod formats;
 mod ids;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::super::{Match, Place, Row, match_rows};
-use super::drawn::{Drawing, at, row};
+use super::super::{Match, MeasurementRow, Place, match_rows};
+use super::drawing::{Drawing, at, row};
 use crate::network::Network;
 
 /// Numbers that are the same in every run (`SplitMix64`).
@@ -69,7 +69,7 @@ fn network() -> Network {
 }
 
 /// A row and the ways that it means. Noise is either of each position or of the whole line.
-fn drawn(random: &mut Random, number: usize) -> (String, Row, Vec<i64>) {
+fn drawn(random: &mut Random, number: usize) -> (String, MeasurementRow, Vec<i64>) {
     let (group, road) = (random.below(GROUPS), random.below(3));
     let first = random.below(PIECES);
     let last = first + random.below(PIECES - first);
@@ -88,7 +88,7 @@ fn drawn(random: &mut Random, number: usize) -> (String, Row, Vec<i64>) {
         if named { "named" } else { "nameless" },
         if apart_m(group) < 20.0 { "8-12 m" } else { "20 m" }
     );
-    let row = Row { name: named.then(|| name(group, road)), ..row(place) };
+    let row = MeasurementRow { name: named.then(|| name(group, road)), ..row(place) };
     (kind, row, (first..=last).map(|piece| way_id(group, road, piece)).collect())
 }
 
@@ -98,7 +98,7 @@ fn of_a_thousand_rows_with_noise_none_is_matched_wrongly() {
     let network = network();
     let mut random = Random(7);
     let cases: Vec<_> = (0..1000).map(|number| drawn(&mut random, number)).collect();
-    let rows: Vec<Row> = cases.iter().map(|case| case.1.clone()).collect();
+    let rows: Vec<MeasurementRow> = cases.iter().map(|case| case.1.clone()).collect();
     let matches = match_rows(&network, &rows);
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     assert_eq!(one_thread.install(|| match_rows(&network, &rows)), matches);
@@ -128,8 +128,8 @@ fn of_a_thousand_points_with_noise_none_is_matched_wrongly() {
     for _ in 0..1000 {
         let (group, road, along_m) = (random.below(GROUPS), random.below(3), random.below_one() * 500.0);
         let (place, noise) = (place(group, road, along_m), random.normal(3.0));
-        let row = super::drawn::point([place[0] + noise[0], place[1] + noise[1]]);
-        let Match::Edges(edges) = super::drawn::matched(&network, &row) else { continue };
+        let row = super::drawing::point([place[0] + noise[0], place[1] + noise[1]]);
+        let Match::Edges(edges) = super::drawing::matched(&network, &row) else { continue };
         let way = network.road(&network.edges[edges[0].index()]).way_id;
         assert_eq!(way, way_id(group, road, (along_m / PIECE_M) as usize), "{place:?} {noise:?}");
         matched += 1;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::super::{EvidenceError, Row, read};
+use super::super::{EvidenceError, MeasurementRow, read};
 
 /// A table of text, with a geometry as a list of positions for each row.
 #[derive(Debug, Clone, Default)]
@@ -205,20 +205,20 @@ pub(super) fn temporary(name: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 /// Reads a file with this name and content.
-pub(super) fn read_as(name: &str, content: &[u8]) -> Result<Vec<Row>, EvidenceError> {
+pub(super) fn read_as(name: &str, content: &[u8]) -> Result<Vec<MeasurementRow>, EvidenceError> {
     let (_folder, path) = temporary(name);
     std::fs::write(&path, content).unwrap();
     read(&path)
 }
 
 /// Reads CSV.
-pub(super) fn read_csv(text: &str) -> Result<Vec<Row>, EvidenceError> {
+pub(super) fn read_csv(text: &str) -> Result<Vec<MeasurementRow>, EvidenceError> {
     read_as("rows.csv", text.as_bytes())
 }
 
 /// The message of a refusal, without the folder.
 #[track_caller]
-pub(super) fn refusal(result: Result<Vec<Row>, EvidenceError>) -> String {
+pub(super) fn refusal(result: Result<Vec<MeasurementRow>, EvidenceError>) -> String {
     let text = result.expect_err("a refusal").to_string();
     let without = |line: &str| match line.find("rows.") {
         Some(at) => line[at..].to_owned(),

@@ -12,8 +12,8 @@ use std::iter::Peekable;
 
 use rustc_hash::FxHashMap;
 
-pub use roads::{OnRoad, Road, RoadChange, Sum, Sums};
-pub use row::Row;
+pub use roads::{NamedRoad, OnRoad, RoadChange, Sum, Sums};
+pub use row::ChangeRow;
 
 use crate::osm::facts::Direction;
 use crate::rows::{CertificateRow, EdgeRow, TurnRow};

@@ -7,14 +7,14 @@ use crate::rows::{Bounds, EdgeRow, TurnRow};
 
 /// A road as people name it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Road {
+pub struct NamedRoad {
     /// Class of the road, as `highway` has it.
     pub highway: String,
     /// Ref or name; a road without either is known by its way.
     pub name: String,
 }
 
-impl Road {
+impl NamedRoad {
     fn of(row: &EdgeRow) -> Self {
         let name = match (&row.road.reference, &row.road.name) {
             (Some(reference), Some(name)) => format!("{reference} {name}"),
@@ -71,7 +71,7 @@ pub struct RoadChange<'s> {
     /// What changed.
     pub change: Change,
     /// The road.
-    pub road: &'s Road,
+    pub road: &'s NamedRoad,
     /// The edges.
     pub on_road: &'s OnRoad,
 }
@@ -79,7 +79,7 @@ pub struct RoadChange<'s> {
 /// Sums of changes, by change and by road.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sums {
-    roads: BTreeMap<(Change, Road), OnRoad>,
+    roads: BTreeMap<(Change, NamedRoad), OnRoad>,
     by_name: BTreeMap<&'static str, Sum>,
 }
 
@@ -87,7 +87,7 @@ impl Sums {
     /// Adds a changed edge.
     pub fn add_edge(&mut self, changed: &Changed<EdgeRow>) {
         let Some(row) = changed.row() else { return };
-        self.roads.entry((changed.change, Road::of(row))).or_default().add(row);
+        self.roads.entry((changed.change, NamedRoad::of(row))).or_default().add(row);
         self.by_name.entry(changed.change.name()).or_default().add(row.length_m);
     }
 

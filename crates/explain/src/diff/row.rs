@@ -9,14 +9,14 @@ use netcert_base::words::{Named, verdict_words};
 
 /// An edge or turn that changed, as the formats for programs have it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// The members by name, all of [`Row::MEMBERS`].
+pub struct ChangeRow {
+    /// The members by name, all of [`ChangeRow::MEMBERS`].
     pub members: Map<String, Value>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
-impl Row {
+impl ChangeRow {
     /// The names of all members, in order.
     pub const MEMBERS: [&'static str; 20] = [
         "vehicle_id",

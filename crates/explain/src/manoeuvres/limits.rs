@@ -2,12 +2,12 @@
 //!
 //! A pass here is no approval: assessments use the real bodies, tyres and axle groups.
 
-use super::measure::{Ring, TurnMeasurements, beyond_limit};
+use super::measure::{CircleMeasurements, TurnMeasurements, beyond_limit};
 use crate::vehicle::Vehicle;
 
 /// The quantity that a limit bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
+pub enum PerformanceMeasure {
     /// Low-speed swept path, 90° at 12.5 m: upper limit.
     SweptPath,
     /// Tail swing in the same turn: upper limit.
@@ -22,7 +22,7 @@ pub enum Measure {
     SwingOut,
 }
 
-impl Measure {
+impl PerformanceMeasure {
     /// Name for people.
     #[must_use]
     pub fn words(self) -> &'static str {
@@ -78,9 +78,9 @@ impl Sureness {
 
 /// A published limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
+pub struct PublishedLimit {
     /// The limited quantity.
-    pub measure: Measure,
+    pub measure: PerformanceMeasure,
     /// The issuer with the level: `PBS level 2`.
     pub who: &'static str,
     /// Value, metres.
@@ -95,9 +95,9 @@ pub struct Limit {
 
 /// A measured value compared with a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Finding {
+pub struct LimitFinding {
     /// The limit.
-    pub limit: Limit,
+    pub limit: PublishedLimit,
     /// Measured value, metres. `None` if the turn cannot be driven (a hinge or the steering would exceed its limit) or
     /// the quantity does not exist.
     pub metres: Option<f64>,
@@ -110,49 +110,55 @@ const PBS: &str = "Australian PBS, Standards and Vehicle Assessment Rules (NTC 2
 const EU: &str = "Directive 96/53/EC with 97/27/EC 7.6.1: outer radius 12.50 m, inner 5.30 m, full circle";
 const STVZO: &str = "StVZO § 32d (rewis.io/gesetze/stvzo/p/stvzo-32d)";
 
-const fn pbs(measure: Measure, who: &'static str, metres: f64) -> Limit {
-    Limit { measure, who, metres, source: PBS, sureness: Sureness::NotRead, buses: None }
+const fn pbs(measure: PerformanceMeasure, who: &'static str, metres: f64) -> PublishedLimit {
+    PublishedLimit { measure, who, metres, source: PBS, sureness: Sureness::NotRead, buses: None }
 }
 
-const fn read(measure: Measure, who: &'static str, metres: f64, source: &'static str, buses: Option<bool>) -> Limit {
-    Limit { measure, who, metres, source, sureness: Sureness::Read, buses }
+const fn read(
+    measure: PerformanceMeasure,
+    who: &'static str,
+    metres: f64,
+    source: &'static str,
+    buses: Option<bool>,
+) -> PublishedLimit {
+    PublishedLimit { measure, who, metres, source, sureness: Sureness::Read, buses }
 }
 
 /// All limits, the stricter levels first.
-const LIMITS: [Limit; 14] = [
-    pbs(Measure::SweptPath, "PBS level 1", 7.4),
-    pbs(Measure::SweptPath, "PBS level 2", 8.7),
-    pbs(Measure::SweptPath, "PBS level 3", 10.6),
-    pbs(Measure::SweptPath, "PBS level 4", 13.7),
-    pbs(Measure::TailSwing, "PBS level 1", 0.30),
-    pbs(Measure::TailSwing, "PBS level 2", 0.35),
-    pbs(Measure::TailSwing, "PBS level 3", 0.35),
-    pbs(Measure::TailSwing, "PBS level 4", 0.50),
-    Limit { buses: Some(false), ..pbs(Measure::FrontalSwing, "PBS, all levels", 0.70) },
-    Limit { buses: Some(true), ..pbs(Measure::FrontalSwing, "PBS, buses", 1.50) },
-    read(Measure::InnerRadius, "EU", 5.30, EU, None),
-    read(Measure::RingWidth, "DE", 7.20, STVZO, None),
-    read(Measure::SwingOut, "DE", 0.80, STVZO, Some(false)),
-    read(Measure::SwingOut, "DE, buses", 0.60, STVZO, Some(true)),
+const LIMITS: [PublishedLimit; 14] = [
+    pbs(PerformanceMeasure::SweptPath, "PBS level 1", 7.4),
+    pbs(PerformanceMeasure::SweptPath, "PBS level 2", 8.7),
+    pbs(PerformanceMeasure::SweptPath, "PBS level 3", 10.6),
+    pbs(PerformanceMeasure::SweptPath, "PBS level 4", 13.7),
+    pbs(PerformanceMeasure::TailSwing, "PBS level 1", 0.30),
+    pbs(PerformanceMeasure::TailSwing, "PBS level 2", 0.35),
+    pbs(PerformanceMeasure::TailSwing, "PBS level 3", 0.35),
+    pbs(PerformanceMeasure::TailSwing, "PBS level 4", 0.50),
+    PublishedLimit { buses: Some(false), ..pbs(PerformanceMeasure::FrontalSwing, "PBS, all levels", 0.70) },
+    PublishedLimit { buses: Some(true), ..pbs(PerformanceMeasure::FrontalSwing, "PBS, buses", 1.50) },
+    read(PerformanceMeasure::InnerRadius, "EU", 5.30, EU, None),
+    read(PerformanceMeasure::RingWidth, "DE", 7.20, STVZO, None),
+    read(PerformanceMeasure::SwingOut, "DE", 0.80, STVZO, Some(false)),
+    read(PerformanceMeasure::SwingOut, "DE, buses", 0.60, STVZO, Some(true)),
 ];
 
 /// Compares the measured values with every limit for such a vehicle. A vehicle whose name contains "bus" is a bus.
 #[must_use]
-pub fn findings(vehicle: &Vehicle, right_angle: &TurnMeasurements, circle: &Ring) -> Vec<Finding> {
+pub fn findings(vehicle: &Vehicle, right_angle: &TurnMeasurements, circle: &CircleMeasurements) -> Vec<LimitFinding> {
     let bus = vehicle.name.to_lowercase().contains("bus");
     let turned = beyond_limit(vehicle, &right_angle.angles_rad).is_none();
     let circled = beyond_limit(vehicle, &circle.angles_rad).is_none();
-    let finding = |limit: &Limit| {
+    let finding = |limit: &PublishedLimit| {
         let metres = match limit.measure {
-            Measure::SweptPath => right_angle.width_m.filter(|_| turned),
-            Measure::TailSwing => turned.then_some(right_angle.tail_swing_m),
-            Measure::FrontalSwing => turned.then_some(right_angle.frontal_swing_m),
-            Measure::InnerRadius => circled.then_some(circle.inner_m),
-            Measure::RingWidth => circled.then_some(circle.width_m()),
-            Measure::SwingOut => circled.then_some(circle.swing_out_m),
+            PerformanceMeasure::SweptPath => right_angle.width_m.filter(|_| turned),
+            PerformanceMeasure::TailSwing => turned.then_some(right_angle.tail_swing_m),
+            PerformanceMeasure::FrontalSwing => turned.then_some(right_angle.frontal_swing_m),
+            PerformanceMeasure::InnerRadius => circled.then_some(circle.inner_m),
+            PerformanceMeasure::RingWidth => circled.then_some(circle.width_m()),
+            PerformanceMeasure::SwingOut => circled.then_some(circle.swing_out_m),
         };
         let keeps = |m: f64| if limit.measure.at_least() { m >= limit.metres } else { m <= limit.metres };
-        Finding { limit: *limit, metres, passes: metres.is_some_and(keeps) }
+        LimitFinding { limit: *limit, metres, passes: metres.is_some_and(keeps) }
     };
     LIMITS.iter().filter(|limit| limit.buses.is_none_or(|buses| buses == bus)).map(finding).collect()
 }

@@ -1,6 +1,6 @@
 //! Measurements of a driven turn: swept width, swings, angles, and the ring of a circle.
 
-use super::turn::Drive;
+use super::turn::DrivenTurn;
 use crate::stet::motion::Pose;
 use crate::vehicle::{Unit, Vehicle};
 
@@ -42,7 +42,7 @@ pub fn beyond_limit(vehicle: &Vehicle, angles_rad: &[f64]) -> Option<usize> {
 
 /// Measurements of a full circle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ring {
+pub struct CircleMeasurements {
     /// Largest distance of any body point from the centre while the guide is on the circle, metres.
     pub outer_m: f64,
     /// Least distance of any body point from the centre, metres; 0 if a body passes over the centre.
@@ -53,7 +53,7 @@ pub struct Ring {
     pub angles_rad: Vec<f64>,
 }
 
-impl Ring {
+impl CircleMeasurements {
     /// Width of the ring around the circle of 12.5 m, metres.
     #[must_use]
     pub fn width_m(&self) -> f64 {
@@ -64,7 +64,7 @@ impl Ring {
 impl TurnMeasurements {
     /// Measures a turn.
     #[must_use]
-    pub fn of(vehicle: &Vehicle, drive: &Drive) -> Self {
+    pub fn of(vehicle: &Vehicle, drive: &DrivenTurn) -> Self {
         let mut gathered = Gathered::default();
         for (poses, &head_m) in drive.poses.iter().zip(&drive.at_m).step_by(EVERY) {
             gathered.moment(vehicle, drive, poses, head_m);
@@ -95,7 +95,7 @@ struct Gathered {
 }
 
 impl Gathered {
-    fn moment(&mut self, vehicle: &Vehicle, drive: &Drive, poses: &[Pose], head_m: f64) {
+    fn moment(&mut self, vehicle: &Vehicle, drive: &DrivenTurn, poses: &[Pose], head_m: f64) {
         let turn = &drive.turn;
         // Distance of each unit's axle behind the guide when straight.
         let mut axle_m = head_m;
@@ -122,10 +122,10 @@ impl Gathered {
     }
 }
 
-impl Ring {
+impl CircleMeasurements {
     /// Measures a circle.
     #[must_use]
-    pub fn of(vehicle: &Vehicle, drive: &Drive) -> Self {
+    pub fn of(vehicle: &Vehicle, drive: &DrivenTurn) -> Self {
         let centre = [0.0, drive.turn.radius_m];
         let (mut inner_m, mut outer_m, mut lowest) = (f64::INFINITY, 0.0_f64, 0.0_f64);
         let arc = drive.turn.radius_m * drive.turn.angle_rad;
@@ -169,7 +169,7 @@ fn points(unit: &Unit) -> impl Iterator<Item = [f64; 2]> + use<> {
 }
 
 /// The largest tail swing of all units, and the unit's index.
-fn tail_swing(vehicle: &Vehicle, drive: &Drive) -> (f64, usize) {
+fn tail_swing(vehicle: &Vehicle, drive: &DrivenTurn) -> (f64, usize) {
     let corner_y = |poses: &[Pose], i: usize| {
         let (unit, pose) = vehicle.units.get(i).zip(poses.get(i))?;
         Some(pose.place(-unit.rear_overhang_m, -0.5 * unit.width_m)[1])
@@ -183,7 +183,7 @@ fn tail_swing(vehicle: &Vehicle, drive: &Drive) -> (f64, usize) {
 }
 
 /// Largest steering angle and articulation angles, radians.
-fn angles(vehicle: &Vehicle, drive: &Drive) -> Vec<f64> {
+fn angles(vehicle: &Vehicle, drive: &DrivenTurn) -> Vec<f64> {
     let between = |a: [f64; 2], b: [f64; 2]| (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]).abs();
     let mut most = vec![0.0_f64; vehicle.units.len()];
     for poses in &drive.poses {

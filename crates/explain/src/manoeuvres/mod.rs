@@ -19,9 +19,9 @@ mod turn;
 use crate::stet::steady_offtracking;
 use crate::vehicle::Vehicle;
 
-pub use limits::{Finding, Limit, Measure, Sureness, findings};
-pub use measure::{Ring, TurnMeasurements, beyond_limit};
-pub use turn::{Drive, Guide, Turn};
+pub use limits::{LimitFinding, PerformanceMeasure, PublishedLimit, Sureness, findings};
+pub use measure::{CircleMeasurements, TurnMeasurements, beyond_limit};
+pub use turn::{DrivenTurn, Guide, PrescribedTurn};
 
 /// Radius of the path that PBS and the European circle prescribe, metres.
 pub const RADIUS_M: f64 = 12.5;
@@ -30,51 +30,51 @@ pub const STEADY_RADII_M: [f64; 5] = [12.5, 25.0, 50.0, 100.0, 200.0];
 
 /// Results of a vehicle's manoeuvres.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Report {
+pub struct ManoeuvreReport {
     /// 90° at 12.5 m, with the outer end of the steer axle (the outer side of the outer steer tyre) on the path.
     pub right_angle: TurnMeasurements,
     /// 180° at 12.5 m with the same guide.
     pub u_turn: TurnMeasurements,
     /// A full circle: the outer front corner arrives along the tangent and then keeps to 12.5 m.
-    pub circle: Ring,
+    pub circle: CircleMeasurements,
     /// Steady offtracking of the last axle relative to the steer axle at each of [`STEADY_RADII_M`], metres. `None`
     /// without a steady state.
     pub steady_offtracking_m: [Option<f64>; 5],
     /// Comparisons with published limits.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<LimitFinding>,
 }
 
 /// Drives all manoeuvres and measures them.
 #[must_use]
-pub fn report(vehicle: &Vehicle) -> Report {
+pub fn report(vehicle: &Vehicle) -> ManoeuvreReport {
     let right_angle = TurnMeasurements::of(vehicle, &right_angle(vehicle).drive(vehicle));
     let u_turn = TurnMeasurements::of(vehicle, &u_turn(vehicle).drive(vehicle));
-    let circle = Ring::of(vehicle, &circle(vehicle).drive(vehicle));
+    let circle = CircleMeasurements::of(vehicle, &circle(vehicle).drive(vehicle));
     let findings = findings(vehicle, &right_angle, &circle);
     let steady_offtracking_m = STEADY_RADII_M.map(|radius_m| steady_offtracking(vehicle, radius_m));
-    Report { right_angle, u_turn, circle, steady_offtracking_m, findings }
+    ManoeuvreReport { right_angle, u_turn, circle, steady_offtracking_m, findings }
 }
 
 /// The 90° turn.
 #[must_use]
-pub fn right_angle(vehicle: &Vehicle) -> Turn {
+pub fn right_angle(vehicle: &Vehicle) -> PrescribedTurn {
     turn(vehicle, std::f64::consts::FRAC_PI_2)
 }
 
 /// The 180° turn.
 #[must_use]
-pub fn u_turn(vehicle: &Vehicle) -> Turn {
+pub fn u_turn(vehicle: &Vehicle) -> PrescribedTurn {
     turn(vehicle, std::f64::consts::PI)
 }
 
-fn turn(vehicle: &Vehicle, angle_rad: f64) -> Turn {
+fn turn(vehicle: &Vehicle, angle_rad: f64) -> PrescribedTurn {
     // After this exit the last trailer is back on the path to within millimetres.
     let exit_m = 2.0 * vehicle.length_m + 10.0;
-    Turn { radius_m: RADIUS_M, angle_rad, guide: Guide::OuterSteerTyre, exit_m }
+    PrescribedTurn { radius_m: RADIUS_M, angle_rad, guide: Guide::OuterSteerTyre, exit_m }
 }
 
 /// The full circle.
 #[must_use]
-pub fn circle(_vehicle: &Vehicle) -> Turn {
-    Turn { radius_m: RADIUS_M, angle_rad: std::f64::consts::TAU, guide: Guide::FrontOuterCorner, exit_m: 0.0 }
+pub fn circle(_vehicle: &Vehicle) -> PrescribedTurn {
+    PrescribedTurn { radius_m: RADIUS_M, angle_rad: std::f64::consts::TAU, guide: Guide::FrontOuterCorner, exit_m: 0.0 }
 }

@@ -24,7 +24,7 @@ pub enum Guide {
 
 /// A turn to the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct PrescribedTurn {
     /// Radius of the path, metres.
     pub radius_m: f64,
     /// Angle of the turn, radians.
@@ -37,9 +37,9 @@ pub struct Turn {
 
 /// A driven turn.
 #[derive(Debug, Clone)]
-pub struct Drive {
+pub struct DrivenTurn {
     /// The turn.
-    pub turn: Turn,
+    pub turn: PrescribedTurn,
     /// Place of the guide at each vertex, metres along the path after the start of the arc.
     pub at_m: Vec<f64>,
     /// The path at each vertex.
@@ -71,7 +71,7 @@ impl Guide {
     }
 }
 
-impl Turn {
+impl PrescribedTurn {
     /// A place on the path, `at_m` metres after the start of the arc.
     #[must_use]
     pub fn place(&self, at_m: f64) -> [f64; 2] {
@@ -108,9 +108,9 @@ impl Turn {
 
     /// Drives the turn.
     #[must_use]
-    pub fn drive(&self, vehicle: &Vehicle) -> Drive {
+    pub fn drive(&self, vehicle: &Vehicle) -> DrivenTurn {
         let Some(prime_mover) = vehicle.units.first() else {
-            return Drive { turn: *self, at_m: Vec::new(), path: Vec::new(), poses: Vec::new() };
+            return DrivenTurn { turn: *self, at_m: Vec::new(), path: Vec::new(), poses: Vec::new() };
         };
         let length_m = LEAD_IN_M + self.radius_m * self.angle_rad + self.exit_m;
         let steps = (length_m / STEP_M).ceil() as usize;
@@ -129,6 +129,6 @@ impl Turn {
             .map(|pose| pose.place(prime_mover.coupling_to_axle_m, -left))
             .collect();
         let poses = sweep_path(&steer, vehicle);
-        Drive { turn: *self, at_m, path, poses }
+        DrivenTurn { turn: *self, at_m, path, poses }
     }
 }

@@ -17,12 +17,14 @@ pub struct RegionFolder {
     /// The greatest number of directed edges of a task.
     pub edges_at_once: u64,
     /// The extract and the assumptions about its roads.
-    pub origin: Origin,
+    pub origin: ExtractOrigin,
 }
 
 /// An extract, and the assumptions about its roads that were made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
+// What is said of a damaged file.
+#[serde(expecting = "struct Origin")]
+pub struct ExtractOrigin {
     /// The extract, as an absolute path.
     pub extract: PathBuf,
     /// `--country`

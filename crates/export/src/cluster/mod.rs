@@ -14,7 +14,7 @@ mod tasks;
 
 use std::path::PathBuf;
 
-pub use folder::{Origin, RegionFolder};
+pub use folder::{ExtractOrigin, RegionFolder};
 pub use results::Results;
 pub use tasks::TaskWriter;
 

@@ -17,7 +17,7 @@ use parquet::record::{Field, Row};
 use super::FolderError;
 use crate::folders::files_below;
 use crate::pipeline::TaskResult;
-use crate::store::Stage;
+use crate::store::CheckpointStage;
 
 /// The results in a folder, file by file.
 pub struct Results {
@@ -93,10 +93,10 @@ impl Iterator for Results {
     }
 }
 
-fn stage_name(stage: Stage) -> &'static str {
+fn stage_name(stage: CheckpointStage) -> &'static str {
     match stage {
-        Stage::Strokes => "strokes",
-        Stage::Turns => "turns",
+        CheckpointStage::Strokes => "strokes",
+        CheckpointStage::Turns => "turns",
     }
 }
 
@@ -108,7 +108,9 @@ fn result(row: &Row) -> Result<(TaskResult, String, String), String> {
             ("task", &Field::Int(number)) => task = u32::try_from(number).ok(),
             ("task", &Field::Long(number)) => task = u32::try_from(number).ok(),
             ("stage", Field::Str(name)) => {
-                stage = [Stage::Strokes, Stage::Turns].into_iter().find(|&stage| stage_name(stage) == name);
+                stage = [CheckpointStage::Strokes, CheckpointStage::Turns]
+                    .into_iter()
+                    .find(|&stage| stage_name(stage) == name);
             }
             ("job", Field::Str(text)) => job = Some(text.clone()),
             ("work", Field::Bytes(bytes)) => work = Some(bytes.data().to_vec()),

@@ -20,7 +20,7 @@ const ALONG_M: f64 = 0.25;
 const M_PER_DEGREE: f64 = 111_195.0;
 
 /// A closed ring, counterclockwise.
-pub(super) type Ring = [LonLat; 5];
+pub(super) type ClosureRing = [LonLat; 5];
 
 /// Counts of closed stretches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Closed {
 /// Calls `put` with the rectangle of every refused stretch, in order of the network.
 pub(super) fn each(
     source: &Source<'_>,
-    mut put: impl FnMut(&Ring) -> Result<(), ExportError>,
+    mut put: impl FnMut(&ClosureRing) -> Result<(), ExportError>,
 ) -> Result<Closed, ExportError> {
     let mut closed = Closed::default();
     let mut last: Option<Stretch> = None;
@@ -89,7 +89,7 @@ struct Stretch {
 }
 
 /// The coordinates of a `Polygon`.
-pub(super) fn polygon(out: &mut dyn Write, ring: &Ring) -> io::Result<()> {
+pub(super) fn polygon(out: &mut dyn Write, ring: &ClosureRing) -> io::Result<()> {
     for (i, place) in ring.iter().enumerate() {
         out.write_all(if i == 0 { b"[[" } else { b"," })?;
         position(out, *place)?;
@@ -98,7 +98,7 @@ pub(super) fn polygon(out: &mut dyn Write, ring: &Ring) -> io::Result<()> {
 }
 
 /// The rectangle across the middle of a line's longest straight.
-fn across(line: &[LonLat]) -> Option<Ring> {
+fn across(line: &[LonLat]) -> Option<ClosureRing> {
     let step = |pair: &[LonLat]| {
         let ((lon, lat), (to_lon, to_lat)) = (pair[0].degrees(), pair[1].degrees());
         let shrink = (0.5 * (lat + to_lat)).to_radians().cos();

@@ -2,9 +2,9 @@
 
 use super::{EDGE_COLUMNS, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
 use crate::osm::LonLat;
-use crate::rows::{Cell, Column, Relative, Standing};
+use crate::rows::{Cell, CertificateStanding, Column, Relative};
 use crate::store::ReferenceReader;
-use crate::{ExportError, Refusal, Source};
+use crate::{ExportError, PermitRefusal, Source};
 
 /// One row of a layer.
 pub(super) struct Row<'r> {
@@ -62,8 +62,8 @@ impl Layer {
                 let mut beside = reference.as_mut().map(ReferenceReader::edges).transpose()?;
                 for edge in source.edges(&mut database)? {
                     let edge = edge?;
-                    let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
-                    let own = Standing::of(&edge.row.certificate);
+                    let refusal = edge.refusal.map_or_else(String::new, PermitRefusal::words);
+                    let own = CertificateStanding::of(&edge.row.certificate);
                     let relative =
                         beside.as_mut().map(|other| other.relative(edge.row.edge.index.get(), own)).transpose()?;
                     let cells = with_relative(&edge_cells(source, &edge, &refusal), relative);
@@ -74,8 +74,8 @@ impl Layer {
                 let mut beside = reference.as_mut().map(ReferenceReader::turns).transpose()?;
                 for turn in source.turns(&mut database)? {
                     let turn = turn?;
-                    let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
-                    let own = Standing::of(&turn.row.certificate);
+                    let refusal = turn.refusal.map_or_else(String::new, PermitRefusal::words);
+                    let own = CertificateStanding::of(&turn.row.certificate);
                     let relative =
                         beside.as_mut().map(|other| other.relative(turn.row.turn.index.get(), own)).transpose()?;
                     let cells = with_relative(&turn_cells(source, &turn, &refusal), relative);

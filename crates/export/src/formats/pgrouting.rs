@@ -20,7 +20,7 @@ use crate::osm::facts::WidthSource;
 use crate::rows::EdgeNo;
 use crate::rows::Rings;
 use crate::words::Named;
-use crate::{Destination, ExportEdge, ExportError, Layout, Refusal, Sink, Source};
+use crate::{Destination, ExportEdge, ExportError, Layout, PermitRefusal, Sink, Source};
 
 /// Creates the tables in one transaction and loads them from the files beside it.
 const LOAD: &str = include_str!("pgrouting_load.sql");
@@ -70,7 +70,7 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
     let (id, edge_id, way) = (u64::from(row.edge.index) + 1, row.edge.id, row.edge.way_id);
     write!(out, "{id}\t{edge_id}\t{way}\t{}\t{}\t{cost}\t{}\t", row.edge.from_node, row.edge.to_node, row.length_m)?;
     field(out, &row.road.highway)?;
-    let refusal = edge.refusal.map(Refusal::words);
+    let refusal = edge.refusal.map(PermitRefusal::words);
     for text in [row.road.name.as_deref(), row.road.reference.as_deref(), refusal.as_deref()] {
         out.write_all(b"\t")?;
         match text {

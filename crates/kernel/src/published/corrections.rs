@@ -4,7 +4,7 @@
 //! CORRCEN centres the last trailer (μ^c = 1, so the trailer moves as far as the prime mover). SHRINK takes off what is
 //! still missing, as if all of it reached the trailer.
 
-use super::ellipse::Shape;
+use super::ellipse::EllipseMatrix;
 use super::leeway::Leeway;
 use super::plane::V2;
 use super::reading::As;
@@ -34,7 +34,13 @@ pub fn corrcen(leeway: &Leeway, permissible: &Permissible) -> f64 {
 
 /// SHRINK of line 14: γ_0 and Q̃_0 = Q_0/γ_0². The missing room comes off the prime mover's radius along `normal`.
 #[must_use]
-pub fn shrink(shape: &Shape, leeway: &Leeway, normal: V2, permissible: &Permissible, radius: As) -> (f64, Shape) {
+pub fn shrink(
+    shape: &EllipseMatrix,
+    leeway: &Leeway,
+    normal: V2,
+    permissible: &Permissible,
+    radius: As,
+) -> (f64, EllipseMatrix) {
     let missing = (-leeway.least_m()).max(0.0);
     let gamma = 1.0 - missing / shape.support_radius_m(normal, radius);
     let gamma = gamma.clamp(permissible.min_shrink, 1.0);
@@ -55,7 +61,7 @@ mod tests {
 
     #[test]
     fn shrinking_takes_off_what_is_missing_and_no_more_than_is_permitted() {
-        let shape = Shape::from_semi_axes([1.0, 0.0], 4.0, 2.0);
+        let shape = EllipseMatrix::from_semi_axes([1.0, 0.0], 4.0, 2.0);
         let (gamma, shrunk) = shrink(&shape, &Leeway { left_m: -0.5, right_m: 1.0 }, [0.0, 1.0], &HALF, As::Printed);
         assert_eq!(gamma, 0.75);
         assert!((shrunk.support_radius_m([0.0, 1.0], As::Printed) - 1.5).abs() < 1e-12);

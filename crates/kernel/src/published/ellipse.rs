@@ -6,7 +6,7 @@ use super::reading::As;
 /// Q ∈ S²₊₊ of Def. 1, 1/m². A point ψ from the centre is inside if ψᵀQψ ≤ 1, so the eigenvalues are inverse *squared*
 /// semi-axes. The paper's formulas keep to this; only its words ("diagonal elements quantify scaling") fit Q⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shape {
+pub struct EllipseMatrix {
     /// First diagonal element.
     pub xx: f64,
     /// Off-diagonal element.
@@ -15,7 +15,7 @@ pub struct Shape {
     pub yy: f64,
 }
 
-impl Shape {
+impl EllipseMatrix {
     /// The ellipse with semi-axis `along_m` along the unit vector `axis` and `across_m` across it; both > 0.
     #[must_use]
     pub fn from_semi_axes(axis: V2, along_m: f64, across_m: f64) -> Self {
@@ -93,7 +93,7 @@ pub struct Stet {
     /// q, metres.
     pub centre: V2,
     /// Q, 1/m².
-    pub shape: Shape,
+    pub shape: EllipseMatrix,
 }
 
 impl Stet {
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn the_boundary_is_where_the_form_is_one() {
-        let tube = Stet { centre: [3.0, -2.0], shape: Shape::from_semi_axes(TILTED, 5.0, 1.5) };
+        let tube = Stet { centre: [3.0, -2.0], shape: EllipseMatrix::from_semi_axes(TILTED, 5.0, 1.5) };
         for p in tube.outline(90) {
             let value = tube.shape.form(minus(p, tube.centre));
             assert!((value - 1.0).abs() < 1e-12, "{value}");
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn support_is_the_greatest_reach_of_any_point_in_that_direction() {
-        let tube = Stet { centre: [0.0; 2], shape: Shape::from_semi_axes(TILTED, 5.0, 1.5) };
+        let tube = Stet { centre: [0.0; 2], shape: EllipseMatrix::from_semi_axes(TILTED, 5.0, 1.5) };
         for k in 0..36 {
             let (s, c) = (f64::from(k) * 0.1745).sin_cos();
             let reach = tube.outline(7200).iter().map(|&p| dot(p, [c, s])).fold(0.0, f64::max);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn both_readings_agree_along_the_axes_and_on_the_longest_radius() {
-        let shape = Shape::from_semi_axes(TILTED, 5.0, 1.5);
+        let shape = EllipseMatrix::from_semi_axes(TILTED, 5.0, 1.5);
         for radius in [As::Printed, As::Repaired] {
             assert!((shape.support_radius_m(TILTED, radius) - 5.0).abs() < 1e-12);
             assert!((shape.support_radius_m(perp(TILTED), radius) - 1.5).abs() < 1e-12);

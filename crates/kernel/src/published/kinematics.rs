@@ -2,7 +2,7 @@
 //!
 //! Eq. 5b lets ι_i depend on δ_i. Eq. 15 to 18, which define ι_i, stand at δ = 0, so there is no such dependence.
 
-use super::ellipse::Shape;
+use super::ellipse::EllipseMatrix;
 use super::plane::{V2, along, dot, link_direction, minus, perp, unit_or};
 use super::reach::sway_shape;
 use super::reading::{As, Reading, Sway};
@@ -17,7 +17,7 @@ pub fn follower_centre(q: V2, e: V2, sway_rad: f64, link_m: f64) -> V2 {
 
 /// ι_i, Eq. 5b by Eq. 15, 17 and 18: Q_{i+1} from Q_i, with the leader moving along ê.
 #[must_use]
-pub fn follower_shape(shape: &Shape, e: V2, system: &System, reading: &Reading) -> Shape {
+pub fn follower_shape(shape: &EllipseMatrix, e: V2, system: &System, reading: &Reading) -> EllipseMatrix {
     let Some(limit) = sway_shape(e, system.link_m, system.sway_rad, reading.rotation) else { return *shape };
     let beta = optimal_beta(shape, &limit, perp(e), reading.beta);
     kurzhanski_varaiya(shape, &limit, beta)
@@ -34,7 +34,7 @@ pub struct Link {
 
 /// The motion of the whole vehicle along a path of the prime mover, as Ω and Ξ need it at every instant.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chain {
+pub struct KinematicChain {
     /// q_i(t): `[unit][instant]`, metres.
     pub centre: Vec<Vec<V2>>,
     /// ê_i(t) and δ_i(t) of hinge i, between units i and i + 1: `[hinge][instant]`. One more entry holds the last
@@ -44,7 +44,7 @@ pub struct Chain {
     link_m: f64,
 }
 
-impl Chain {
+impl KinematicChain {
     /// Follows the prime mover's path `q0`. The vehicle enters along `entry` with all units in line.
     #[must_use]
     pub fn follow(system: &System, q0: &[V2], entry: V2, reading: &Reading) -> Self {
@@ -90,7 +90,7 @@ impl Chain {
 
     /// Ξ(t, δ̂(t)) at instant `i` (Eq. 8b, 8d): the shapes of all units from the prime mover's shape.
     #[must_use]
-    pub fn xi(&self, i: usize, shape: &Shape, system: &System, reading: &Reading) -> Vec<Shape> {
+    pub fn xi(&self, i: usize, shape: &EllipseMatrix, system: &System, reading: &Reading) -> Vec<EllipseMatrix> {
         let mut shapes = vec![*shape];
         let mut q = *shape;
         for links in &self.link[..self.link.len() - 1] {
@@ -153,7 +153,7 @@ mod tests {
     }
 
     fn steady_radius(reading: &Reading) -> f64 {
-        let chain = Chain::follow(&SYSTEM, &circle(40.0, 150.0), [1.0, 0.0], reading);
+        let chain = KinematicChain::follow(&SYSTEM, &circle(40.0, 150.0), [1.0, 0.0], reading);
         let q = &chain.centre[2];
         // Away from the end, where velocities are one-sided.
         let p = q[q.len() - 20];
@@ -176,7 +176,7 @@ mod tests {
     fn on_a_straight_all_units_are_in_line() {
         let path: Vec<V2> = (0..100).map(|i| [f64::from(i), 0.0]).collect();
         for reading in [Reading::PRINTED, Reading::SIMULATED] {
-            let chain = Chain::follow(&SYSTEM, &path, [1.0, 0.0], &reading);
+            let chain = KinematicChain::follow(&SYSTEM, &path, [1.0, 0.0], &reading);
             for i in [0, 50, 99] {
                 assert_eq!(chain.centre[2][i], [i as f64 - 10.0, 0.0]);
                 assert_eq!(chain.omega(i, path[i])[2], chain.centre[2][i]);
@@ -189,7 +189,7 @@ mod tests {
     fn the_composed_maps_give_back_the_chain() {
         let path = circle(30.0, 60.0);
         for reading in [Reading::PRINTED, Reading::SIMULATED] {
-            let chain = Chain::follow(&SYSTEM, &path, [1.0, 0.0], &reading);
+            let chain = KinematicChain::follow(&SYSTEM, &path, [1.0, 0.0], &reading);
             for i in (0..path.len()).step_by(100) {
                 for (unit, q) in chain.omega(i, path[i]).into_iter().enumerate() {
                     let gap = minus(q, chain.centre[unit][i]);

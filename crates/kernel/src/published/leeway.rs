@@ -3,7 +3,7 @@
 use super::ellipse::Stet;
 use super::plane::{dot, minus};
 use super::reading::{As, Reading};
-use super::route::{Foot, Route};
+use super::route::{Foot, TimedRoute};
 
 /// (η_l, η_r), metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ impl Leeway {
 /// r_l and r_r are taken along the normals at the foot. Def. 5 gives r a normal by time and ζ a normal by place; only
 /// at the foot are both the same.
 #[must_use]
-pub fn boundary_leeway(route: &Route, tube: &Stet, near: usize, reading: &Reading) -> Leeway {
+pub fn boundary_leeway(route: &TimedRoute, tube: &Stet, near: usize, reading: &Reading) -> Leeway {
     let foot = route.foot(tube.centre, near);
     let radius = tube.shape.support_radius_m(foot.normal, reading.radius);
     let [left, right] = offsets(route, tube, &foot, reading);
@@ -35,7 +35,7 @@ pub fn boundary_leeway(route: &Route, tube: &Stet, near: usize, reading: &Readin
 }
 
 /// Eq. 20: ζ_l and ζ_r. Each of its faults (E10, E11) can be kept or repaired separately.
-fn offsets(route: &Route, tube: &Stet, foot: &Foot, reading: &Reading) -> [f64; 2] {
+fn offsets(route: &TimedRoute, tube: &Stet, foot: &Foot, reading: &Reading) -> [f64; 2] {
     let outward = match reading.normals {
         As::Printed => -1.0,
         As::Repaired => 1.0,

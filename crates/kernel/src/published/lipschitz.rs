@@ -41,7 +41,7 @@ pub fn shape_constant(system: &System, beta: f64, axes: Axes) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::ellipse::Shape;
+    use crate::published::ellipse::EllipseMatrix;
     use crate::published::reach::sway_shape;
     use crate::published::reading::As;
     use crate::published::sum::kurzhanski_varaiya;
@@ -53,7 +53,11 @@ mod tests {
         let limit = sway_shape([1.0, 0.0], SYSTEM.link_m, SYSTEM.sway_rad, As::Repaired);
         let shape = |t: f64, scale: f64| {
             let angle = angles(t);
-            Shape::from_semi_axes([angle.cos(), angle.sin()], scale * (0.3 + (1.3 * t).sin().powi(2)), 0.7 * scale)
+            EllipseMatrix::from_semi_axes(
+                [angle.cos(), angle.sin()],
+                scale * (0.3 + (1.3 * t).sin().powi(2)),
+                0.7 * scale,
+            )
         };
         let mut worst = 0.0_f64;
         for i in 0..2000 {

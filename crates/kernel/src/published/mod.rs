@@ -20,7 +20,7 @@
 //! | `route_cert` | Algorithm 1 |
 //! | `theorem` | the Theorem, Eq. 21-23 |
 //! | `rsc` | the Corollary, Eq. 24-25: CERT, 𝒞, h_Ω, h_Ξ, w_min |
-//! | `table`, `drawn` | Table I, and netcert's own route, as long as the paper's |
+//! | `table`, `drawn_route` | Table I, and netcert's own route, as long as the paper's |
 //! | `radius` | r_N^max of a vehicle of the catalogue, for the column `rsc_published_m` |
 //!
 //! The paper leaves some points open. They are read here as follows:
@@ -34,7 +34,7 @@
 //! - Σ has one L, θ and 𝒟 for all units, and couplings over axles.
 
 mod corrections;
-mod drawn;
+mod drawn_route;
 mod ellipse;
 mod kinematics;
 mod leeway;
@@ -52,17 +52,17 @@ mod table;
 mod theorem;
 
 pub use corrections::{Permissible, corrcen, shrink};
-pub use drawn::{DrawnError, DrawnRoute, drawn_route};
-pub use ellipse::{Shape, Stet};
-pub use kinematics::{Chain, Link, follower_centre, follower_shape, no_slip_sway};
+pub use drawn_route::{DrawnError, DrawnRoute, drawn_route};
+pub use ellipse::{EllipseMatrix, Stet};
+pub use kinematics::{KinematicChain, Link, follower_centre, follower_shape, no_slip_sway};
 pub use leeway::{Leeway, boundary_leeway};
 pub use lipschitz::{Axes, centre_constant, shape_constant};
 pub use plane::link_direction;
 pub use radius::last_radius_m;
 pub use reach::{in_reachable_set, peak_sways_m, reach_displacement, sway_displacement, sway_ellipse, sway_shape};
 pub use reading::{As, Beta, Offset, Reading, Sway};
-pub use route::Route;
-pub use route_cert::{Correction, RouteCert, Step, route_cert};
+pub use route::TimedRoute;
+pub use route_cert::{Correction, LoopInstant, RouteCert, route_cert};
 pub use rsc::{Rsc, cert};
 pub use sum::{kurzhanski_varaiya, optimal_beta};
 pub use system::System;

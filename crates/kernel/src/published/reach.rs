@@ -1,6 +1,6 @@
 //! Eq. 10 to 15: the follower's reachable set, and the ellipse meant to hold its sway.
 
-use super::ellipse::{Shape, Stet};
+use super::ellipse::{EllipseMatrix, Stet};
 use super::plane::{V2, along, dot, link_direction, perp};
 use super::reading::{As, Reading};
 use super::system::System;
@@ -27,14 +27,14 @@ pub fn peak_sways_m(link_m: f64, sway_rad: f64) -> (f64, f64) {
 /// Eq. 15: Q^lim. As printed, U = [û, û^⊥]ᵀ, which turns the ellipse the wrong way (E3). `None` if the hinge does not
 /// sway: the ellipse is then a point, which no Q describes.
 #[must_use]
-pub fn sway_shape(e: V2, link_m: f64, sway_rad: f64, rotation: As) -> Option<Shape> {
+pub fn sway_shape(e: V2, link_m: f64, sway_rad: f64, rotation: As) -> Option<EllipseMatrix> {
     let (a, b) = peak_sways_m(link_m, sway_rad);
     let axis = match rotation {
         // U D Uᵀ with U = Rᵀ is the rotation by the opposite angle.
         As::Printed => [e[0], -e[1]],
         As::Repaired => e,
     };
-    (a > 0.0 && b > 0.0).then(|| Shape::from_semi_axes(axis, a, b))
+    (a > 0.0 && b > 0.0).then(|| EllipseMatrix::from_semi_axes(axis, a, b))
 }
 
 /// 𝓔^lim of Eq. 16 for a leader at `q`. As printed its centre is q − L û(0). Repaired its centre is q − L cos θ û(0),
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn followers_are_in_the_reachable_set_and_others_are_not() {
-        let leader = Stet { centre: [1.0, 2.0], shape: Shape::from_semi_axes(E, 0.5, 0.2) };
+        let leader = Stet { centre: [1.0, 2.0], shape: EllipseMatrix::from_semi_axes(E, 0.5, 0.2) };
         for p in leader.outline(24) {
             for sway in [-0.39, 0.0, 0.39] {
                 let inner = along(leader.centre, 0.99, along(p, -1.0, leader.centre));

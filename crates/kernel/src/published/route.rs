@@ -8,7 +8,7 @@ use netcert_base::speed_profile::SpeedProfile;
 ///
 /// Def. 2 has one width, centred. Where a corridor has two half-widths, the lesser one counts on both sides.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Route {
+pub struct TimedRoute {
     /// t, seconds, growing.
     pub t_s: Vec<f64>,
     /// c(t), metres.
@@ -21,7 +21,7 @@ pub struct Route {
     pub spacing_m: f64,
 }
 
-impl Route {
+impl TimedRoute {
     /// The route along `corridor`, driven at `speeds`.
     #[must_use]
     pub fn new(corridor: &Corridor, speeds: &SpeedProfile) -> Self {
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn edges_lie_half_a_width_to_either_side_and_bound_the_strip() {
-        let route = Route::new(&Corridor::straight(50.0, 3.0, 2.5), &SpeedProfile::default());
+        let route = TimedRoute::new(&Corridor::straight(50.0, 3.0, 2.5), &SpeedProfile::default());
         let near = |a: V2, b: V2| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12;
         assert!(near(route.left(10), [10.0, 2.5]) && near(route.right(10), [10.0, -2.5]));
         assert!(
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn feet_on_a_circle_are_where_the_radius_says() {
         let corridor = Corridor::from_curvature(1.0, [0.0; 2], 0.0, &[1.0 / 40.0; 61], 3.0, 3.0);
-        let route = Route::new(&corridor, &SpeedProfile::default());
+        let route = TimedRoute::new(&corridor, &SpeedProfile::default());
         for i in 0..400 {
             let (angle, lateral) = (0.003 * f64::from(i) + 0.05, 0.01 * f64::from(i) - 2.0);
             let p = [(40.0 - lateral) * angle.sin(), 40.0 - (40.0 - lateral) * angle.cos()];

@@ -2,12 +2,12 @@
 //! to CERT.
 
 use super::corrections::{Permissible, corrcen, shrink};
-use super::ellipse::{Shape, Stet};
-use super::kinematics::Chain;
+use super::ellipse::{EllipseMatrix, Stet};
+use super::kinematics::KinematicChain;
 use super::leeway::{Leeway, boundary_leeway};
 use super::plane::{V2, along, minus, perp};
 use super::reading::Reading;
-use super::route::Route;
+use super::route::TimedRoute;
 use super::rsc::{Rsc, cert};
 use super::system::System;
 
@@ -24,7 +24,7 @@ pub enum Correction {
 
 /// One instant of the loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct LoopInstant {
     /// η of the last trailer, line 9.
     pub before: Leeway,
     /// η of the last trailer with q̃_0(i) and Q̃_0(i), after all corrections.
@@ -45,16 +45,16 @@ pub struct RouteCert {
     /// Corrected tubes 𝓔_i(q̃_i, Q̃_i) of all units: `[unit][instant]`. The first one is the prime mover's plan.
     pub tubes: Vec<Vec<Stet>>,
     /// One entry per instant.
-    pub steps: Vec<Step>,
+    pub steps: Vec<LoopInstant>,
     /// The nominal motion: q_i, ê_i and δ_i.
-    pub chain: Chain,
+    pub chain: KinematicChain,
 }
 
 impl RouteCert {
     /// 𝓔_i(q̃_i(t), Q̃_i(t)) of a unit at any t (seconds); q and Q are linear between instants. `None` outside [0, T]
     /// or for a unit that does not exist. `route` must be the route of this certificate.
     #[must_use]
-    pub fn tube_at(&self, route: &Route, unit: usize, t_s: f64) -> Option<Stet> {
+    pub fn tube_at(&self, route: &TimedRoute, unit: usize, t_s: f64) -> Option<Stet> {
         let (i, fraction) = route.instant(t_s)?;
         let tube = self.tubes.get(unit)?;
         let before = tube.get(i)?;
@@ -71,7 +71,7 @@ impl RouteCert {
 #[must_use]
 pub fn route_cert(
     system: &System,
-    route: &Route,
+    route: &TimedRoute,
     path: &[V2],
     permissible: &Permissible,
     reading: &Reading,
@@ -79,7 +79,7 @@ pub fn route_cert(
     if route.is_empty() || path.len() != route.len() {
         return None;
     }
-    let chain = Chain::follow(system, path, route.tangent[0], reading);
+    let chain = KinematicChain::follow(system, path, route.tangent[0], reading);
     // Line 1: Safe and Unsafe are one bool, known in line 24.
     let mut tubes = vec![Vec::with_capacity(path.len()); system.trailers + 1];
     let mut steps = Vec::with_capacity(path.len());
@@ -100,15 +100,15 @@ pub fn route_cert(
 /// One pass of the loop.
 struct Instant<'a> {
     system: &'a System,
-    route: &'a Route,
-    chain: &'a Chain,
+    route: &'a TimedRoute,
+    chain: &'a KinematicChain,
     reading: &'a Reading,
     i: usize,
 }
 
 impl Instant<'_> {
     /// Lines 3 to 21: q̃_0(i), Q̃_0(i).
-    fn corrected(&self, q0: V2, permissible: &Permissible) -> (Step, Stet) {
+    fn corrected(&self, q0: V2, permissible: &Permissible) -> (LoopInstant, Stet) {
         let (i, reading) = (self.i, self.reading);
         // Lines 3 and 4.
         let heading = self.chain.link[0][i].direction;
@@ -116,7 +116,7 @@ impl Instant<'_> {
         // Lines 5 to 9. The normals of Def. 5 belong to the boundary; line 6 takes them from the direction of motion
         // ê_n. For a trailer that drives along the route, both are the route's normal at the foot.
         let before = self.leeway(&nominal);
-        let uncorrected = Step { before, after: before, correction: Correction::None, shift_m: 0.0, gamma: 1.0 };
+        let uncorrected = LoopInstant { before, after: before, correction: Correction::None, shift_m: 0.0, gamma: 1.0 };
         // Lines 10 and 20.
         if before.least_m() > 0.0 {
             return (uncorrected, nominal);
@@ -129,19 +129,19 @@ impl Instant<'_> {
         let after = self.leeway(&centred);
         // Lines 13 and 17.
         if after.least_m() > 0.0 {
-            return (Step { after, correction: Correction::Centre, shift_m, ..uncorrected }, centred);
+            return (LoopInstant { after, correction: Correction::Centre, shift_m, ..uncorrected }, centred);
         }
         // Lines 14 and 15.
         let (gamma, shape) = shrink(&nominal.shape, &after, normal, permissible, reading.radius);
         let shrunk = Stet { shape, ..centred };
         let after = self.leeway(&shrunk);
-        (Step { before, after, correction: Correction::CentreAndShape, shift_m, gamma }, shrunk)
+        (LoopInstant { before, after, correction: Correction::CentreAndShape, shift_m, gamma }, shrunk)
     }
 
     /// The tubes of all units, through Ω and Ξ.
     fn propagated(&self, prime: &Stet) -> impl Iterator<Item = Stet> + use<> {
         let centres = self.chain.omega(self.i, prime.centre);
-        let shapes: Vec<Shape> = self.chain.xi(self.i, &prime.shape, self.system, self.reading);
+        let shapes: Vec<EllipseMatrix> = self.chain.xi(self.i, &prime.shape, self.system, self.reading);
         centres.into_iter().zip(shapes).map(|(centre, shape)| Stet { centre, shape })
     }
 
@@ -162,8 +162,8 @@ mod tests {
     const SYSTEM: System = System { trailers: 2, link_m: 4.0, sway_rad: 0.05, length_m: 8.0, width_m: 2.5 };
     const NONE: Permissible = Permissible { max_shift_m: 0.0, min_shrink: 1.0 };
 
-    fn straight(half_m: f64) -> Route {
-        Route::new(&Corridor::straight(60.0, half_m, half_m), &SpeedProfile::default())
+    fn straight(half_m: f64) -> TimedRoute {
+        TimedRoute::new(&Corridor::straight(60.0, half_m, half_m), &SpeedProfile::default())
     }
 
     #[test]
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn on_a_steady_circle_the_offset_is_the_off_tracking() {
         let corridor = Corridor::from_curvature(0.5, [0.0; 2], 0.0, &[1.0 / 50.0; 400], 9.0, 9.0);
-        let route = Route::new(&corridor, &SpeedProfile::default());
+        let route = TimedRoute::new(&corridor, &SpeedProfile::default());
         let run = route_cert(&SYSTEM, &route, &route.centre, &NONE, &Reading::SIMULATED).unwrap();
         let expected = 50.0 - (2500.0f64 - 32.0).sqrt();
         assert!((run.rsc.h_omega_m - expected).abs() < 1e-3, "{} not {expected}", run.rsc.h_omega_m);

@@ -3,7 +3,7 @@
 use super::ellipse::Stet;
 use super::plane::{dot, minus};
 use super::reading::{As, Offset, Reading};
-use super::route::Route;
+use super::route::TimedRoute;
 
 /// 𝒞 and its parts. If all units count (E5), they are those of the unit with the least 𝒞.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ impl Rsc {
 
 /// CERT of line 23 over corrected tubes, `[unit][instant]`. `None` without units.
 #[must_use]
-pub fn cert(route: &Route, tubes: &[Vec<Stet>], reading: &Reading) -> Option<Rsc> {
+pub fn cert(route: &TimedRoute, tubes: &[Vec<Stet>], reading: &Reading) -> Option<Rsc> {
     let prime = tubes.first()?;
     let w_min_m = route.narrowest_m();
     let prime_radius_m = greatest_radius_m(route, prime, reading);
@@ -56,7 +56,7 @@ pub fn cert(route: &Route, tubes: &[Vec<Stet>], reading: &Reading) -> Option<Rsc
 }
 
 /// r_i^max over all instants and directions; only across the road if E7 is repaired.
-fn greatest_radius_m(route: &Route, tube: &[Stet], reading: &Reading) -> f64 {
+fn greatest_radius_m(route: &TimedRoute, tube: &[Stet], reading: &Reading) -> f64 {
     let radius = |(i, stet): (usize, &Stet)| match reading.room {
         As::Printed => stet.shape.largest_radius_m(),
         As::Repaired => stet.shape.support_radius_m(route.foot(stet.centre, i).normal, reading.radius),
@@ -65,7 +65,7 @@ fn greatest_radius_m(route: &Route, tube: &[Stet], reading: &Reading) -> f64 {
 }
 
 /// h_Ω: the least constant for which Corollary (i) holds.
-fn greatest_offset_m(route: &Route, prime: &[Stet], tube: &[Stet], reading: &Reading) -> f64 {
+fn greatest_offset_m(route: &TimedRoute, prime: &[Stet], tube: &[Stet], reading: &Reading) -> f64 {
     let lateral = |i: usize, stet: &Stet| route.foot(stet.centre, i).lateral_m;
     let offset = |i: usize| match reading.offset {
         Offset::SameInstant => dot(minus(tube[i].centre, prime[i].centre), route.normal(i)),

@@ -1,6 +1,6 @@
 //! Σ: the paper's articulated vehicle, with one L, θ and 𝒟 for all units.
 
-use super::ellipse::Shape;
+use super::ellipse::EllipseMatrix;
 use super::plane::V2;
 use super::reading::As;
 use netcert_base::vehicle::{Unit, Vehicle};
@@ -67,8 +67,8 @@ impl System {
 
     /// Q_0(t) of a prime mover with heading `heading` (a unit vector). Its semi-axes are half the dimensions 𝒟.
     #[must_use]
-    pub fn prime_shape(&self, heading: V2, body: As) -> Shape {
-        Shape::from_semi_axes(heading, self.prime_radius_m(body), 0.5 * self.width_m * hold(body))
+    pub fn prime_shape(&self, heading: V2, body: As) -> EllipseMatrix {
+        EllipseMatrix::from_semi_axes(heading, self.prime_radius_m(body), 0.5 * self.width_m * hold(body))
     }
 }
 

@@ -7,9 +7,9 @@ use netcert_base::corrections::Options;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
+use super::area_corrections::finished;
 use super::areas::Grounds;
-use super::held::finished;
-use super::marked::{Marks, marked};
+use super::marks::{Marks, marked};
 use super::model::Model;
 use super::plan::{self, Unplanned};
 use super::reach::VehicleReach;

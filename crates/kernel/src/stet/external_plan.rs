@@ -6,7 +6,7 @@
 
 use thiserror::Error;
 
-use super::marked::Marks;
+use super::marks::Marks;
 use super::model::Model;
 use super::results::Certificate;
 use super::shift::{Plan, STEP_M, count};

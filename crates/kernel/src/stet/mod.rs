@@ -4,6 +4,7 @@
 //! and no clock but that of the guard ([`netcert_base::watch`]).
 
 mod adjoint;
+mod area_corrections;
 mod areas;
 mod ascent;
 mod block;
@@ -15,11 +16,10 @@ mod external_plan;
 mod fading;
 mod gains;
 mod group;
-mod held;
 mod lanes;
 mod least;
 mod leeway;
-mod marked;
+mod marks;
 mod model;
 pub mod motion;
 mod plan;
@@ -60,8 +60,8 @@ pub use results::{Certificate, Limiting, Planned, SpanResult};
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
-use held::swept_as_one;
-use marked::Marks;
+use area_corrections::swept_as_one;
+use marks::Marks;
 use stretches::{best_swept, swept_by_stretches};
 
 /// Certifies vehicles over `spans` of stations. Each vehicle drives the whole corridor by itself, and each gets one

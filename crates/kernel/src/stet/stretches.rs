@@ -6,8 +6,8 @@
 
 use std::ops::Range;
 
-use super::held::{safe, swept_as_one};
-use super::marked::Marks;
+use super::area_corrections::{safe, swept_as_one};
+use super::marks::Marks;
 use super::model::Model;
 use super::results::SpanResult;
 use super::shift::{KNOT_STATIONS, Plan, STEP_M, count};

@@ -20,9 +20,9 @@ use super::ride::{Refining, Ride};
 use super::spans;
 use super::steer::SteerPaths;
 use super::track::Track;
-use netcert_base::counted::{WorkKind, count};
 use netcert_base::stop::Stop;
 use netcert_base::watch;
+use netcert_base::work_count::{WorkKind, count};
 
 /// Sweeps vehicles along their tracks, eight at a time, and returns the minima of each. No ride matters to another one. With
 /// `CERTIFY`, all bounds are deducted and hinges are checked. Otherwise the result is the nominal leeway of a few points less

@@ -9,7 +9,7 @@ use netcert_base::stop::Stop;
 
 use super::areas::Grounds;
 use super::block::{BLOCK, Minima};
-use super::marked::{Marks, marked};
+use super::marks::{Marks, marked};
 use super::model::Model;
 use super::plan::{self, Unplanned};
 use super::results::{Certificate, SpanResult};

@@ -4,7 +4,7 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use super::areas::{Areas, Grounds};
+use super::areas::{Grounds, PreparedAreas};
 use super::lanes::{LANES, Vector};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use netcert_base::corridor::Corridor;
@@ -42,7 +42,7 @@ pub(super) struct Track {
     /// Stations that do not fit their neighbours: nothing is certified there.
     pub(super) torn: Vec<usize>,
     /// Areas that stand in for the half-widths.
-    pub(super) areas: Areas,
+    pub(super) areas: PreparedAreas,
     /// The next marked station from each station on. At marked stations the leeway between two points of a side counts.
     next_mark: Vec<u32>,
     coarse: OnceCell<Box<Track>>,
@@ -121,7 +121,7 @@ impl Track {
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         let next_mark = vec![u32::MAX; fields.x.len() + 1];
-        let areas = Areas::new(corridor, lead, grounds);
+        let areas = PreparedAreas::new(corridor, lead, grounds);
         Self { spacing: h, lead, first_head, count, fields, torn, areas, next_mark, coarse: OnceCell::new() }
     }
 

@@ -6,7 +6,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
-use super::changes::Kind;
+use super::changes::ObjectKind;
 use super::facts::BackdropKind;
 use crate::osm::{LonLat, NodeId};
 
@@ -16,7 +16,7 @@ pub struct Backdrop {
     /// What it is.
     pub kind: BackdropKind,
     /// The object in OpenStreetMap.
-    pub object: (Kind, i64),
+    pub object: (ObjectKind, i64),
     /// Its name, if it has one.
     pub name: Option<Box<str>>,
     /// Where it is.

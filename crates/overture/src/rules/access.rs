@@ -7,7 +7,7 @@ use crate::record::{Access as Rule, When};
 
 /// How specific the modes of a rule are for a lorry. The more specific one is the greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Rank {
+pub(super) enum ModeRank {
     /// No modes are named.
     All,
     /// `vehicle`
@@ -29,16 +29,16 @@ pub(super) enum For {
 const OTHERS: [&str; 8] = ["bicycle", "car", "emergency", "foot", "hov", "motorcycle", "pedestrian", "taxi"];
 
 /// The rank of a rule's modes, and whether some of them are unknown. `None` if it concerns no vehicle of the kind.
-fn rank(when: Option<&When>, whom: For) -> (Option<Rank>, bool) {
+fn rank(when: Option<&When>, whom: For) -> (Option<ModeRank>, bool) {
     let Some(modes) = when.and_then(|when| when.mode.as_ref()).filter(|modes| !modes.is_empty()) else {
-        return (Some(Rank::All), false);
+        return (Some(ModeRank::All), false);
     };
     let mut strange = false;
     let of_mode = |mode: &String| match mode.as_str() {
-        "vehicle" => Some(Rank::Vehicle),
-        "motor_vehicle" => Some(Rank::MotorVehicle),
-        "truck" | "hgv" => (whom == For::Lorries).then_some(Rank::Lorry),
-        "bus" => (whom == For::Buses).then_some(Rank::Lorry),
+        "vehicle" => Some(ModeRank::Vehicle),
+        "motor_vehicle" => Some(ModeRank::MotorVehicle),
+        "truck" | "hgv" => (whom == For::Lorries).then_some(ModeRank::Lorry),
+        "bus" => (whom == For::Buses).then_some(ModeRank::Lorry),
         other => {
             strange |= !OTHERS.contains(&other);
             None
@@ -57,11 +57,11 @@ pub(crate) fn concerns_lorries(when: Option<&When>) -> bool {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Effect {
     /// Closes the headings, whole or to through traffic. `direction`: the rule says that this direction of travel does not exist.
-    Deny { rank: Rank, headings: [bool; 2], to: Permission, direction: bool },
+    Deny { rank: ModeRank, headings: [bool; 2], to: Permission, direction: bool },
     /// Closes the headings at some times.
-    DenyDuring { rank: Rank, headings: [bool; 2], times: String },
+    DenyDuring { rank: ModeRank, headings: [bool; 2], times: String },
     /// Lifts denials.
-    Allow { rank: Rank, headings: [bool; 2], to: Permission },
+    Allow { rank: ModeRank, headings: [bool; 2], to: Permission },
     /// Bars large vehicles.
     Limit { headings: [bool; 2], kind: LimitKind, limit: Limit },
     /// Bars vehicles with more axles.
@@ -85,7 +85,7 @@ impl Effect {
                 };
                 (effect, None)
             }
-            kind => match rank.or(strange_mode.then_some(Rank::Lorry)) {
+            kind => match rank.or(strange_mode.then_some(ModeRank::Lorry)) {
                 None => (Self::None("other_vehicles"), None),
                 Some(rank) if !strange && kind == Some("denied") => Self::deny(when, rank),
                 // What is not understood may close the road, and so may an unknown kind of rule.
@@ -98,7 +98,7 @@ impl Effect {
     }
 
     /// What a rule opens of which everything is understood but perhaps its heading.
-    fn allow(when: Option<&When>, rank: Rank) -> Self {
+    fn allow(when: Option<&When>, rank: ModeRank) -> Self {
         let Some(when) = when else { return Self::Allow { rank, headings: [true; 2], to: Permission::Yes } };
         if !matches!(when.heading.as_deref(), None | Some("forward" | "backward")) {
             return Self::None("not_understood");
@@ -121,7 +121,7 @@ impl Effect {
     }
 
     /// What a rule closes of which everything is understood, and a remark on it.
-    fn deny(when: Option<&When>, rank: Rank) -> (Self, Option<&'static str>) {
+    fn deny(when: Option<&When>, rank: ModeRank) -> (Self, Option<&'static str>) {
         let Some(when) = when else {
             return (Self::Deny { rank, headings: [true; 2], to: Permission::No, direction: false }, None);
         };
@@ -154,7 +154,7 @@ impl Effect {
             );
         }
         let one = headings[0] != headings[1];
-        (Self::Deny { rank, headings, to: Permission::No, direction: one && rank == Rank::All }, None)
+        (Self::Deny { rank, headings, to: Permission::No, direction: one && rank == ModeRank::All }, None)
     }
 }
 
@@ -171,28 +171,28 @@ fn order(kind: LimitKind) -> u8 {
 
 /// Access of a part of a road, while its rules are applied in order.
 #[derive(Debug, Default)]
-pub(super) struct Access {
+pub(super) struct SegmentAccess {
     limits: [Legal; 2],
     /// By heading and rank.
     denied: [[Permission; 4]; 2],
     /// By heading: whether a rule says that the direction does not exist.
     absent: [bool; 2],
     /// Times at which headings are closed, by rank.
-    times: Vec<(usize, Rank, String)>,
+    times: Vec<(usize, ModeRank, String)>,
     /// Greatest number of axles, by heading.
     axles: [Option<u32>; 2],
 }
 
 /// Access of a part of a road for lorries or for buses.
-pub(super) struct Outcome {
+pub(super) struct VehicleAccess {
     pub(super) limits: [Legal; 2],
     pub(super) denied: [[Permission; 4]; 2],
     pub(super) oneway: Oneway,
-    pub(super) times: Vec<(usize, Rank, String)>,
+    pub(super) times: Vec<(usize, ModeRank, String)>,
     pub(super) axles: [Option<u32>; 2],
 }
 
-impl Access {
+impl SegmentAccess {
     pub(super) fn apply(&mut self, effect: &Effect) {
         match effect.clone() {
             Effect::None(_) => {}
@@ -228,17 +228,17 @@ impl Access {
     }
 
     /// What all rules together say.
-    pub(super) fn finish(self) -> Outcome {
+    pub(super) fn finish(self) -> VehicleAccess {
         let oneway = match self.absent {
             [false, true] => Oneway::Forward,
             [true, false] => Oneway::Backward,
             _ => Oneway::No,
         };
-        Outcome { limits: self.limits, denied: self.denied, oneway, times: self.times, axles: self.axles }
+        VehicleAccess { limits: self.limits, denied: self.denied, oneway, times: self.times, axles: self.axles }
     }
 }
 
-impl Outcome {
+impl VehicleAccess {
     /// Access by the general ranks, and by that of the kind of vehicle.
     fn permissions(&self, heading: usize) -> [Permission; 2] {
         let [general @ .., own] = self.denied[heading];
@@ -253,11 +253,11 @@ impl Outcome {
         for (heading, legal) in legal.iter_mut().enumerate() {
             let [general, lorry] = self.permissions(heading);
             (legal.motor_vehicle, legal.hgv) = (general, lorry);
-            let timed = |rank: fn(Rank) -> bool| self.times.iter().any(|(at, of, _)| *at == heading && rank(*of));
-            if timed(|rank| rank < Rank::Lorry) {
+            let timed = |rank: fn(ModeRank) -> bool| self.times.iter().any(|(at, of, _)| *at == heading && rank(*of));
+            if timed(|rank| rank < ModeRank::Lorry) {
                 legal.motor_vehicle = legal.motor_vehicle.max(Permission::Restricted);
             }
-            if timed(|rank| rank == Rank::Lorry) {
+            if timed(|rank| rank == ModeRank::Lorry) {
                 legal.hgv = legal.hgv.max(Permission::Restricted);
             }
             legal.rules = self.rules(buses, heading);

@@ -10,17 +10,17 @@ use std::num::NonZeroU8;
 
 use super::account::{Account, RULE};
 use super::record::{Segment, SpeedLimit, When};
-use crate::osm::facts::{GivenRoad, Legal, Limit, LimitKind, Oneway, Permission, RoadClass};
+use crate::osm::facts::{Legal, Limit, LimitKind, Oneway, Permission, RoadClass, RoadValues};
 
 pub(super) use access::concerns_lorries;
-use access::{Access, Effect, For, Rank};
+use access::{Effect, For, ModeRank, SegmentAccess};
 
 /// Part of a segment that a rule holds on: shares from its begin and to its end.
 pub(super) type Range = [f64; 2];
 
 /// The rules of one segment.
 #[derive(Debug, Default)]
-pub(super) struct Rules {
+pub(super) struct SegmentRules {
     access: Vec<(Range, Effect)>,
     buses: Vec<(Range, Effect)>,
     speeds: Vec<(Range, [bool; 2], NonZeroU8)>,
@@ -43,7 +43,7 @@ pub(super) fn range(between: Option<&[f64]>) -> Option<Range> {
     }
 }
 
-impl Rules {
+impl SegmentRules {
     /// Reads the rules of a segment and counts each.
     pub(super) fn of(segment: &Segment, account: &mut Account) -> Self {
         let mut rules = Self { link: segment.subclass.as_deref() == Some("link"), ..Self::default() };
@@ -172,7 +172,7 @@ impl Rules {
     /// Whether a service road is a driveway or a parking aisle between two shares, and no rule there opens it to heavy vehicles by name. No
     /// rule changes inside.
     pub(super) fn is_minor(&self, part: Range) -> bool {
-        let opens = |effect: &Effect| matches!(effect, Effect::Allow { rank: Rank::Lorry, .. });
+        let opens = |effect: &Effect| matches!(effect, Effect::Allow { rank: ModeRank::Lorry, .. });
         self.minor.iter().any(|range| holds(*range, part))
             && !self.access.iter().any(|(range, effect)| holds(*range, part) && opens(effect))
     }
@@ -185,15 +185,16 @@ impl Rules {
 
     /// Whether some rule opens the road to motor vehicles by name, and a width is known.
     pub(super) fn open_with_width(&self) -> bool {
-        let opens = |effect: &Effect| matches!(effect, Effect::Allow { rank: Rank::Lorry | Rank::MotorVehicle, .. });
+        let opens =
+            |effect: &Effect| matches!(effect, Effect::Allow { rank: ModeRank::Lorry | ModeRank::MotorVehicle, .. });
         self.access.iter().any(|(_, effect)| opens(effect)) && !self.widths.is_empty()
     }
 
     /// The road between two shares. No rule changes inside.
-    pub(super) fn road(&self, class: RoadClass, part: Range) -> GivenRoad {
+    pub(super) fn road(&self, class: RoadClass, part: Range) -> RoadValues {
         let holds = |range: &Range| holds(*range, part);
         let all = |effects: &[(Range, Effect)]| {
-            let mut access = Access::default();
+            let mut access = SegmentAccess::default();
             effects.iter().filter(|(range, _)| holds(range)).for_each(|(_, effect)| access.apply(effect));
             access.finish()
         };
@@ -210,7 +211,7 @@ impl Rules {
         }
         let widths = self.widths.iter().filter(|(range, _)| holds(range)).map(|(_, width)| *width);
         let link = self.link || self.links.iter().any(holds);
-        GivenRoad { class, link, oneway, traffic, legal, max_speed_km_h, width_m: widths.reduce(f64::min) }
+        RoadValues { class, link, oneway, traffic, legal, max_speed_km_h, width_m: widths.reduce(f64::min) }
     }
 
     /// The refs of the routes over a part, each once.

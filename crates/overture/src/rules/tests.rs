@@ -8,14 +8,14 @@ use crate::record::Segment;
 use crate::vehicle::{Catalogue, Vehicle};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
-fn rules(segment: Value) -> (Rules, Account) {
+fn rules(segment: Value) -> (SegmentRules, Account) {
     let mut account = Account::default();
     let segment: Segment = serde_json::from_value(segment).unwrap();
-    let rules = Rules::of(&segment, &mut account);
+    let rules = SegmentRules::of(&segment, &mut account);
     (rules, account)
 }
 
-fn whole(access: Value) -> (GivenRoad, Account) {
+fn whole(access: Value) -> (RoadValues, Account) {
     let (rules, account) = rules(json!({"access_restrictions": access}));
     (rules.road(RoadClass::Secondary, [0.0, 1.0]), account)
 }
@@ -30,7 +30,7 @@ fn counts(account: &Account) -> Vec<(String, String, u64)> {
     rows.map(|row| (row.outcome, row.reason, row.count)).collect()
 }
 
-fn verdicts(road: &GivenRoad) -> [Option<Verdict>; 2] {
+fn verdicts(road: &RoadValues) -> [Option<Verdict>; 2] {
     road.legal.clone().map(|legal| legal.forbids(&semi()))
 }
 

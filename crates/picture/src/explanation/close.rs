@@ -5,11 +5,11 @@ use super::super::furniture::dimension;
 use super::super::palette::{self, Colour};
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
-use super::super::{Frame, Point, View, bodies, scale_bar};
+use super::super::{PageFrame, Point, View, bodies, scale_bar};
 use super::{body_colour, scene, verdict_colour};
 use crate::explain::{Explanation, Geometry, cautious_m};
 
-pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     picture.clipped(frame, "close-up", |p| {
         p.rect(frame, 0.0, Style::area(palette::PAPER));
         if e.hinge_decides() { hinge(p, e, g, frame) } else { corner(p, e, g, frame) }
@@ -17,7 +17,7 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
 }
 
-fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     let place = &g.place;
     let out = place.outward;
     // Forward along the road: the outward normal, turned so that the road runs to the right.
@@ -89,7 +89,7 @@ fn bar(picture: &mut Picture, from: Point, to: Point, colour: Colour) {
     dimension(picture, from, to, "", TextStyle::size(14.0).coloured(colour));
 }
 
-fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     let h = &g.hinge;
     let Some((pose, unit)) = h.poses.get(h.unit).zip(e.vehicle.units.get(h.unit)) else { return };
     let pivot = pose.place(unit.coupling_to_axle_m, 0.0);

@@ -10,7 +10,7 @@ mod strip;
 use super::palette::{self, Colour};
 use super::style::{Style, TextStyle};
 use super::svg::Picture;
-use super::{Frame, Key, legend};
+use super::{LegendEntry, PageFrame, legend};
 use crate::explain::{Explanation, Geometry, Words, words};
 use crate::verdict::Verdict;
 
@@ -28,14 +28,14 @@ pub fn explanation(e: &Explanation) -> Option<String> {
     let left = WIDTH - 3.0 * MARGIN - SIDE;
     let scene_height = scene::height(e, g, left);
     let row = scene_height.max(330.0);
-    let scene_frame = Frame { x: MARGIN, y: head.height, width: left, height: row };
-    let close_frame = Frame { x: left + 2.0 * MARGIN, y: head.height, width: SIDE, height: row };
+    let scene_frame = PageFrame { x: MARGIN, y: head.height, width: left, height: row };
+    let close_frame = PageFrame { x: left + 2.0 * MARGIN, y: head.height, width: SIDE, height: row };
     let low = head.height + row + 30.0;
-    let strip_frame = Frame { x: MARGIN + 52.0, y: low + 14.0, width: left - 52.0, height: 190.0 };
+    let strip_frame = PageFrame { x: MARGIN + 52.0, y: low + 14.0, width: left - 52.0, height: 190.0 };
     let keys_at = [close_frame.x, low];
     let keys = keys(e, g);
     let overview_top = low + 20.0 * keys.len() as f64 + 14.0;
-    let overview_frame = Frame { x: close_frame.x, y: overview_top, width: SIDE, height: 180.0 };
+    let overview_frame = PageFrame { x: close_frame.x, y: overview_top, width: SIDE, height: 180.0 };
     let height = (overview_frame.y + overview_frame.height).max(strip_frame.y + strip_frame.height + 45.0) + 50.0;
 
     let mut picture =
@@ -74,7 +74,7 @@ fn body_colour(e: &Explanation, g: &Geometry, unit: usize) -> Colour {
     if limits { palette::ORANGE } else { palette::SKY }
 }
 
-fn keys(e: &Explanation, g: &Geometry) -> Vec<Key> {
+fn keys(e: &Explanation, g: &Geometry) -> Vec<LegendEntry> {
     let unit = |i: usize| e.vehicle.units.get(i).map_or("unit", |unit| unit.name.as_str());
     let limits = match (e.hinge_decides(), g.hinge.unit) {
         (true, 0) => format!("{}, nominally", unit(0)),
@@ -82,14 +82,14 @@ fn keys(e: &Explanation, g: &Geometry) -> Vec<Key> {
         (false, _) => format!("{}, nominally", unit(g.place.unit)),
     };
     vec![
-        Key::new(Style::area(palette::ORANGE).filled_at(0.45).outlined(palette::INK, 1.2), limits),
-        Key::new(
+        LegendEntry::new(Style::area(palette::ORANGE).filled_at(0.45).outlined(palette::INK, 1.2), limits),
+        LegendEntry::new(
             Style::area(palette::SKY).filled_at(0.35).outlined(palette::INK, 0.8),
             "the other units; faint: before and after",
         ),
-        Key::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle"),
-        Key::new(Style::line(palette::GREY, 1.2).dashed(9.0, 4.0), format!("middle of the {}", e.strip_name())),
-        Key::new(Style::area(palette::PURPLE).filled_at(0.35), "tube: where that unit's axle may be"),
+        LegendEntry::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle"),
+        LegendEntry::new(Style::line(palette::GREY, 1.2).dashed(9.0, 4.0), format!("middle of the {}", e.strip_name())),
+        LegendEntry::new(Style::area(palette::PURPLE).filled_at(0.35), "tube: where that unit's axle may be"),
     ]
 }
 
@@ -124,7 +124,11 @@ impl Head {
 
     fn draw(&self, picture: &mut Picture) {
         let mut y = 18.0;
-        picture.rect(Frame { x: 0.0, y: 0.0, width: 8.0, height: self.height - 10.0 }, 0.0, Style::area(self.colour));
+        picture.rect(
+            PageFrame { x: 0.0, y: 0.0, width: 8.0, height: self.height - 10.0 },
+            0.0,
+            Style::area(self.colour),
+        );
         for line in &self.title {
             y += 28.0;
             picture.text([MARGIN, y - 4.0], line, TextStyle::size(23.0).bold());

@@ -6,7 +6,7 @@ use super::super::furniture::{arrow, scale_bar};
 use super::super::palette;
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
-use super::super::{Bounds, Frame, Point, View, bodies, callout};
+use super::super::{BoundingBox, PageFrame, Point, View, bodies, callout};
 use super::{body_colour, verdict_colour};
 use crate::explain::{Cross, Explanation, Geometry, cautious_m};
 use crate::stet::motion::Pose;
@@ -52,11 +52,11 @@ pub(super) fn height(e: &Explanation, g: &Geometry, width: f64) -> f64 {
     let turn = -chord(moment(e, g).1);
     let [cos, sin] = [turn.cos(), turn.sin()];
     let turned: Vec<Point> = content(e, g).iter().map(|p| [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos]).collect();
-    let [w, h] = Bounds::of(&turned).size();
+    let [w, h] = BoundingBox::of(&turned).size();
     (width * h / w.max(1.0)).clamp(300.0, 600.0)
 }
 
-pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     let (head, poses) = moment(e, g);
     let view = View::turned(&content(e, g), -chord(poses), frame.inset(14.0)).at_most(60.0);
     let stations = window(e, g, head);
@@ -184,7 +184,7 @@ pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, stations: 
 }
 
 /// Draws the deciding place, with what is missing or to spare.
-fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame: Frame) {
+fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame: PageFrame) {
     let colour = verdict_colour(e);
     let (target, lines) = if e.hinge_decides() {
         let h = &g.hinge;
@@ -206,7 +206,7 @@ fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame
 }
 
 /// A corner away from the frame's middle, where the road is not.
-fn corner_for(at: Point, frame: Frame) -> Point {
+fn corner_for(at: Point, frame: PageFrame) -> Point {
     let right = at[0] < frame.x + 0.5 * frame.width;
     let x = (if right { at[0] + 50.0 } else { at[0] - 220.0 }).clamp(frame.x + 8.0, frame.x + frame.width - 190.0);
     let above = at[1] - frame.y > 0.5 * frame.height;
@@ -215,7 +215,7 @@ fn corner_for(at: Point, frame: Frame) -> Point {
     [x, y]
 }
 
-fn compass(picture: &mut Picture, view: &View, frame: Frame) {
+fn compass(picture: &mut Picture, view: &View, frame: PageFrame) {
     let north = view.direction([0.0, 1.0]);
     let centre = [frame.x + frame.width - 44.0, frame.y + 44.0];
     let tip = [centre[0] + 16.0 * north[0], centre[1] + 16.0 * north[1]];

@@ -4,7 +4,7 @@ use super::super::furniture::{arrow, scale_bar};
 use super::super::palette;
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
-use super::super::{Bounds, Chart, Frame, Point, Scale, View};
+use super::super::{BoundingBox, Chart, PageFrame, Point, Scale, View};
 use super::verdict_colour;
 use crate::explain::{Explanation, Geometry};
 use crate::stet::known_m;
@@ -16,7 +16,7 @@ const ENOUGH_M: f64 = 1.2;
 /// Leeway at which the overview's colours end, metres.
 const FULL_M: f64 = 0.6;
 
-pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     let (left, right) = (series(g, &g.certificate.left_m), series(g, &g.certificate.right_m));
     let least = left.iter().chain(&right).map(|p| p[1]).fold(g.result.rsc_m.unwrap_or(0.0), f64::min).max(-3.0);
     let most = left.iter().chain(&right).map(|p| p[1]).fold(0.3, f64::max).min(ENOUGH_M);
@@ -81,10 +81,10 @@ fn series(g: &Geometry, leeway: &[f64]) -> Vec<Point> {
         .collect()
 }
 
-pub(super) fn overview(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
+pub(super) fn overview(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: PageFrame) {
     let point = |k: usize| [g.corridor.x[k], g.corridor.y[k]];
     let own: Vec<Point> = g.span.clone().map(point).collect();
-    let view = View::fit(&Bounds::of(&own).grown(0.02 * g.length_m() + 5.0), frame.inset(26.0));
+    let view = View::fit(&BoundingBox::of(&own).grown(0.02 * g.length_m() + 5.0), frame.inset(26.0));
     picture.clipped(frame, "overview", |p| {
         p.rect(frame, 0.0, Style::area(palette::PAPER));
         let all: Vec<Point> = (0..g.corridor.len()).step_by(1 + g.corridor.len() / 4000).map(point).collect();

@@ -2,20 +2,20 @@
 //!
 //! The result is that of certifying everything again. All of a change is one transaction.
 
-mod carried;
+mod carry_over;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-pub(super) use carried::carried_over;
+pub(super) use carry_over::carried_over;
 
-use super::again::{Again, MadeAgain, StoredSet, VerdictChanges};
 use super::error::RunError;
+use super::recertification::{MadeAgain, Recertification, StoredSet, VerdictChanges};
 use super::summary::Summary;
 use crate::account::AccountRow;
-use crate::certify::Touched;
+use crate::certify::Dependents;
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
 use crate::osm::facts::Policy;
@@ -23,7 +23,7 @@ use crate::reporter::Reporter;
 use crate::store::{Database, Register, Renewal, Run, StoreError};
 use crate::turns::{KerbSource, TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::words::Named as _;
-use netcert_evidence::{self as evidence, Conflict, Entry, Quantity, Row, State, Target};
+use netcert_evidence::{self as evidence, Conflict, Entry, MeasurementRow, MeasurementTarget, Quantity, State};
 
 /// What to change.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ pub enum What {
         /// Name of the file that they come from.
         file: String,
         /// The measurements.
-        rows: Vec<Row>,
+        rows: Vec<MeasurementRow>,
         /// Whether to leave out those whose place is not found.
         matched_only: bool,
     },
@@ -61,7 +61,7 @@ pub struct EvidenceChanged {
     /// Rows that were left out because their place was not found.
     pub left_out: Vec<Entry>,
     /// Rows that the register has already, with their numbers there; none for the double of a row of the same file.
-    pub doubles: Vec<(Row, Option<i64>)>,
+    pub doubles: Vec<(MeasurementRow, Option<i64>)>,
     /// Measurements that were removed.
     pub removed: Vec<Entry>,
     /// Contradictions that the added measurements have part in.
@@ -118,12 +118,12 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     let ingest = db.settings_of_new_sets()?;
     let facts = if db.keeps_turns()? { Some(turn_facts(&network, &ingest.kerbs)) } else { None };
     changed.conflicts.extend(mapped_corners(&network, facts.as_deref().unwrap_or_default(), &changed.added));
-    let touched = Touched::find(&network, facts.as_deref().unwrap_or_default(), &edges, &nodes);
+    let touched = Dependents::find(&network, facts.as_deref().unwrap_or_default(), &edges, &nodes);
     changed.again = [touched.edges(&network).count(), touched.turns.len()];
     if ask.dry_run {
         return Ok(changed);
     }
-    let again = Again { network: &network, facts: facts.as_deref().unwrap_or_default(), touched: &touched };
+    let again = Recertification { network: &network, facts: facts.as_deref().unwrap_or_default(), touched: &touched };
     let measured = again.measures(&ingest, reporter);
     let mut sets = Vec::new();
     if !touched.strokes.is_empty() || !touched.turns.is_empty() {
@@ -256,7 +256,7 @@ fn mapped_corners(network: &Network, turns: &[TurnFacts], added: &[Entry]) -> Ve
             sources.peek().is_some() && sources.all(|source| source == Some(KerbSource::Mapped))
         };
         let node = entry.targets().find_map(|target| match target {
-            Target::Corner { node, .. } if mapped_at(node) => Some(node),
+            MeasurementTarget::Corner { node, .. } if mapped_at(node) => Some(node),
             _ => None,
         })?;
         let what = format!(

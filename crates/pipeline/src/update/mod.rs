@@ -17,7 +17,7 @@ use crate::words::Named as _;
 use super::error::RunError;
 use super::new_database::{Made, NewDatabase, Whom};
 use super::replacement::{Certify, certify};
-use super::reuse::Older;
+use super::reuse::OlderDatabase;
 use super::roads::EDGES_AT_ONCE;
 use super::source::{self, utc};
 use super::summary::Summary;
@@ -171,7 +171,7 @@ fn make(
         parameters: ask.parameters.clone(),
         now: ask.now,
     };
-    let older = Older { database: &mut old, vehicles: own, made_from };
+    let older = OlderDatabase { database: &mut old, vehicles: own, made_from };
     let Made { mut summary, in_place } = database.make(Whom::Earlier(older, models), None, reporter)?;
     for (id, settings) in others {
         if in_place {

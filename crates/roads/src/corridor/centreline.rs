@@ -5,7 +5,7 @@
 
 use super::polyline::Polyline;
 use super::profile::Profile;
-use super::resample::{ArcLength, Curve, MOST_STATIONS, Track};
+use super::resample::{ArcLength, Curve, EdgedCurve, MOST_STATIONS};
 use super::smooth::{Smoothing, smooth};
 use super::spline::Interpolant;
 use super::{Corridor, Params};
@@ -160,7 +160,7 @@ fn sampled(
 ) -> Result<Corridor, CentrelineError> {
     // The curve itself is the centreline. Its edges follow below.
     let profile = Profile { knot_m: line.length(), coefficients: vec![[1.0, -1.0, 0.0]; 4] }.cubics();
-    let track = Track { curve, profile: &profile };
+    let track = EdgedCurve { curve, profile: &profile };
     let (mut corridor, arc) = track.resample(0.0, line.length(), spacing_m);
     corridor.left_m = below(&line.at, left, &arc, &corridor);
     corridor.right_m = below(&line.at, right, &arc, &corridor);

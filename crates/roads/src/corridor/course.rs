@@ -16,7 +16,7 @@ const BEYOND_M: f64 = 150.0;
 const MOST_TURNS: usize = 12;
 
 /// An edge of the chain: its place in the frame, and its widths.
-pub(super) struct Link<'n> {
+pub(super) struct ChainLink<'n> {
     pub(super) index: EdgeNo,
     pub(super) edge: &'n Edge,
     /// The positions that are driven, in direction of travel.
@@ -66,15 +66,15 @@ pub(super) struct DrivenLink {
 }
 
 /// The line of the chain as driven.
-pub(super) struct Course {
+pub(super) struct ChainLine {
     pub(super) line: Polyline,
     pub(super) driven: Vec<DrivenLink>,
     /// Arc length at which the corridor ends. The line beyond it is for smoothing only.
     pub(super) end: f64,
 }
 
-pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
-    let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(links.len()), end: 0.0 };
+pub(super) fn open_course(links: &[ChainLink<'_>], approach: usize) -> ChainLine {
+    let mut course = ChainLine { line: Polyline::default(), driven: Vec::with_capacity(links.len()), end: 0.0 };
     for link in 0..links.len() {
         course.drive(links, link, if link >= approach { Role::Counted } else { Role::LeadIn });
     }
@@ -84,7 +84,7 @@ pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
 
 /// Unrolls a loop. Enough of its edges precede the counted turn that a vehicle enters it fully articulated, and enough
 /// follow that its last unit leaves it.
-pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
+pub(super) fn closed_course(links: &[ChainLink<'_>], params: &Params) -> ChainLine {
     let n = links.len();
     let length = |link: usize| -> f64 {
         links[link].points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum()
@@ -102,7 +102,7 @@ pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
     let before = count(params.lead_in_m, &|i| n - 1 - i % n);
     let tail = count(TAIL_M, &|i| i % n);
     let beyond = count(TAIL_M + BEYOND_M, &|i| i % n);
-    let mut course = Course { line: Polyline::default(), driven: Vec::with_capacity(before + n + beyond), end: 0.0 };
+    let mut course = ChainLine { line: Polyline::default(), driven: Vec::with_capacity(before + n + beyond), end: 0.0 };
     for i in 0..before {
         course.drive(links, n - 1 - (before - 1 - i) % n, Role::LeadIn);
     }
@@ -121,8 +121,8 @@ pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
     course
 }
 
-impl Course {
-    fn drive(&mut self, links: &[Link<'_>], link: usize, role: Role) {
+impl ChainLine {
+    fn drive(&mut self, links: &[ChainLink<'_>], link: usize, role: Role) {
         let at: Vec<f64> = links[link].points.iter().map(|&p| self.line.push(p)).collect();
         let (from, to) = (at.first().copied().unwrap_or(0.0), at.last().copied().unwrap_or(0.0));
         self.driven.push(DrivenLink { link, role, from, to, at, aside_m: 0.0 });
@@ -130,7 +130,7 @@ impl Course {
 
     /// Removes the jogs of the line where two carriageways meet a road. Returns the jogs, placed on the new line, and
     /// the ramps by which the new line lies beside the map's.
-    pub(super) fn straighten(&mut self, links: &[Link<'_>], splits: &Splits) -> (Vec<Jog>, Vec<Ramp>) {
+    pub(super) fn straighten(&mut self, links: &[ChainLink<'_>], splits: &Splits) -> (Vec<Jog>, Vec<Ramp>) {
         let found: Vec<(usize, Jog)> = (1..self.driven.len())
             .filter_map(|after| Some((after, self.split(links, splits, after)?.jog(&self.line)?)))
             .collect();
@@ -158,7 +158,7 @@ impl Course {
     }
 
     /// The split between the previous piece and the piece `after`, if the road parts or joins there.
-    fn split(&self, links: &[Link<'_>], splits: &Splits, after: usize) -> Option<Split> {
+    fn split(&self, links: &[ChainLink<'_>], splits: &Splits, after: usize) -> Option<Split> {
         let link = |one: &DrivenLink| links.get(one.link);
         let (a, b) = (link(self.driven.get(after - 1)?)?, link(self.driven.get(after)?)?);
         let (ahead, two_way, one_way) = match (a.two_way, b.two_way) {

@@ -7,7 +7,6 @@ mod centreline;
 mod course;
 mod file;
 mod frame;
-mod laid;
 mod merge;
 mod observation;
 mod outline;
@@ -18,6 +17,7 @@ mod smooth;
 mod spline;
 mod stretch;
 mod stroke;
+mod stroke_layout;
 mod taper;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -27,10 +27,10 @@ use std::ops::Range;
 pub use centreline::{CentrelineError, from_centreline};
 pub use file::{Drawn, FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
-pub use laid::{LaidOut, Sections};
-pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
+pub use netcert_base::corridor::{AreaSpan, Corridor, CurvatureProfile, PlaneArea};
 pub use outline::{open_ends, outline};
 pub use stroke::stroke_corridor;
+pub use stroke_layout::{Sections, StrokeLayout};
 
 use crate::network::EdgeNo;
 use crate::verdict::UnknownReason;

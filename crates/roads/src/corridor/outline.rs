@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{Area, AreaSpan, Corridor};
+use super::{AreaSpan, Corridor, PlaneArea};
 
 /// Vertices this close to the line between their neighbours are removed, metres.
 const COLLINEAR_M: f64 = 2e-3;
@@ -98,7 +98,7 @@ pub fn open_ends(corridor: &mut Corridor, open: [bool; 2]) {
     });
     for (heads, strip) in [before, after].into_iter().flatten() {
         if let Some(ring) = strip.filter(|_| heads.len() > 1) {
-            corridor.areas.push(AreaSpan { heads, area: Arc::new(Area { rings: vec![ring] }) });
+            corridor.areas.push(AreaSpan { heads, area: Arc::new(PlaneArea { rings: vec![ring] }) });
         }
     }
     corridor.areas.sort_by_key(|span| (span.heads.start, span.heads.end));
@@ -116,7 +116,7 @@ mod tests {
         let profile = profile.arc(-0.08, 9.0).clothoid(0.0, 3.0).straight(20.0);
         let corridor = Corridor::from_curvature(1.0, [3.0, -4.0], 0.7, &profile.curvature, 4.0, 5.0);
         let edges = |_| [4.0, -5.0];
-        let ring = Area { rings: vec![outline(&corridor, 0..corridor.len(), &edges, [0.0; 2]).unwrap()] };
+        let ring = PlaneArea { rings: vec![outline(&corridor, 0..corridor.len(), &edges, [0.0; 2]).unwrap()] };
         // The same road in steps of a hundredth: places of its edges are not inside.
         let fine: Vec<f64> = (0..100 * (corridor.len() - 1))
             .map(|i| {
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn an_area_near_the_beginning_gets_the_road_before_it() {
         let mut corridor = Corridor::straight(200.0, 2.0, 3.0);
-        let area = Arc::new(Area { rings: vec![vec![[0.0, -3.0], [90.0, -3.0], [90.0, 2.0], [0.0, 2.0]]] });
+        let area = Arc::new(PlaneArea { rings: vec![vec![[0.0, -3.0], [90.0, -3.0], [90.0, 2.0], [0.0, 2.0]]] });
         corridor.areas = vec![AreaSpan { heads: 10..60, area }];
         let mut shut = corridor.clone();
         open_ends(&mut shut, [false, true]);

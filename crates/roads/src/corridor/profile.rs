@@ -6,12 +6,12 @@
 //! within the lanes of its direction. No width is invented.
 
 use super::spline::{Cubics, KNOT_M, Spline};
-use super::stretch::{Across, Stretch};
+use super::stretch::{Across, LineStretch};
 use super::taper::{Ramp, take_jumps};
 
 /// A narrow place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Gap {
+pub(crate) struct NarrowPlace {
     pub(crate) at: f64,
     pub(crate) room: Across,
 }
@@ -35,7 +35,7 @@ pub(crate) const CHANGE_M: f64 = (2 * REACH + 4) as f64 * KNOT_M;
 /// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end. The profile
 /// refers to the line that lies `aside` of the stretches' own line. Also returns the tapers along which the strip
 /// moves.
-pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (Profile, Vec<Ramp>) {
+pub(crate) fn profile(stretches: &[LineStretch], aside: &[Ramp], gaps: &[NarrowPlace]) -> (Profile, Vec<Ramp>) {
     let length = stretches.last().map_or(0.0, |s| s.to);
     let cells = ((length / KNOT_M).ceil() as usize).max(1);
     let knot_m = length / cells as f64;
@@ -47,8 +47,10 @@ pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (P
     let mut lined_up = if gaps.is_empty() {
         edges.clone()
     } else {
-        let moved: Vec<Gap> =
-            gaps.iter().map(|g| Gap { room: g.room.moved(-sum(&tapers, g.at) - sum(aside, g.at)), ..*g }).collect();
+        let moved: Vec<NarrowPlace> = gaps
+            .iter()
+            .map(|g| NarrowPlace { room: g.room.moved(-sum(&tapers, g.at) - sum(aside, g.at)), ..*g })
+            .collect();
         tapered(&with_gaps(limits, &moved, knot_m))
     };
     if !tapers.is_empty() {
@@ -106,7 +108,7 @@ fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
 
 /// Around every place where the strip shifts sideways without a taper, adds the strip before or after the shift, as far
 /// as the lanes of the direction allow. Otherwise two strips 1.75 m apart would meet in a corridor of half a lane.
-fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
+fn with_shifts(stretches: &[LineStretch], knot_m: f64) -> Vec<LineStretch> {
     // As long as a change, so that both edges move side by side at full width.
     let length = (2 * REACH + 4) as f64 * knot_m;
     // Stretches come into the list when a shift reaches them, so that one of many shifts moves only those around it.
@@ -132,7 +134,7 @@ fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
 }
 
 /// Widens the stretches between `from` and `to` by `strip`, as far as their lanes reach. Stretches follow each other.
-fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
+fn allow(stretches: &mut Vec<LineStretch>, from: f64, to: f64, strip: Across) {
     let first = stretches.partition_point(|s| s.to <= from);
     let end = stretches.partition_point(|s| s.from < to).max(first);
     let mut out = Vec::with_capacity(end - first + 2);
@@ -143,18 +145,23 @@ fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
             continue;
         };
         if s.from < inner_from {
-            out.push(Stretch { to: inner_from, ..*s });
+            out.push(LineStretch { to: inner_from, ..*s });
         }
-        out.push(Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s });
+        out.push(LineStretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s });
         if inner_to < s.to {
-            out.push(Stretch { from: inner_to, ..*s });
+            out.push(LineStretch { from: inner_to, ..*s });
         }
     }
     stretches.splice(first..end, out);
 }
 
 /// The narrowest limits of every cell, `[left, right]`.
-fn cell_limits(stretches: &[Stretch], cells: usize, knot_m: f64, of: impl Fn(&Stretch) -> Across) -> Vec<[f64; 2]> {
+fn cell_limits(
+    stretches: &[LineStretch],
+    cells: usize,
+    knot_m: f64,
+    of: impl Fn(&LineStretch) -> Across,
+) -> Vec<[f64; 2]> {
     let mut limits = vec![[f64::INFINITY, f64::NEG_INFINITY]; cells];
     for s in stretches {
         let first = ((s.from / knot_m).floor() as usize).min(cells - 1);
@@ -207,12 +214,12 @@ fn running_mean(values: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
 }
 
 /// The cells that a narrow place touches.
-fn cells_of(gap: &Gap, knot_m: f64, cells: usize) -> std::ops::RangeInclusive<usize> {
+fn cells_of(gap: &NarrowPlace, knot_m: f64, cells: usize) -> std::ops::RangeInclusive<usize> {
     let cell = |u: f64| ((u / knot_m).max(0.0) as usize).min(cells - 1);
     cell(gap.at - GAP_HALF_M)..=cell(gap.at + GAP_HALF_M)
 }
 
-fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[Gap], knot_m: f64) -> Vec<[f64; 2]> {
+fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[NarrowPlace], knot_m: f64) -> Vec<[f64; 2]> {
     let cells = limits.len();
     for gap in gaps {
         for limit in &mut limits[cells_of(gap, knot_m, cells)] {
@@ -224,7 +231,7 @@ fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[Gap], knot_m: f64) -> Vec<[f64; 
 
 /// Pulls the coefficients in until the profile is inside each gap along its length. On a cell the profile is at most
 /// the largest of its four coefficients, so each coefficient gives up the excess.
-fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
+fn narrow(coefficients: &mut [[f64; 2]], gaps: &[NarrowPlace], knot_m: f64) {
     let mut give_up = vec![[0.0_f64; 2]; coefficients.len()];
     for gap in gaps {
         for i in cells_of(gap, knot_m, coefficients.len() - 3) {
@@ -280,27 +287,27 @@ mod tests {
     use proptest::prelude::*;
 
     /// Stretches that follow each other: length, place of the strip, and whether its lanes are wider.
-    fn stretches(all: impl Iterator<Item = (f64, f64, bool)>) -> Vec<Stretch> {
+    fn stretches(all: impl Iterator<Item = (f64, f64, bool)>) -> Vec<LineStretch> {
         let mut end = 0.0;
         all.map(|(length_m, aside_m, wide)| {
             let strip = Across { left_m: 1.5, right_m: -1.5 }.moved(aside_m);
             let shift = if wide { Across { left_m: 6.0, right_m: -6.0 } } else { strip };
             let from = end;
             end += length_m;
-            Stretch { from, to: end, strip, shift, surface: shift, two_way: false, ratio: 8.0 }
+            LineStretch { from, to: end, strip, shift, surface: shift, two_way: false, ratio: 8.0 }
         })
         .collect()
     }
 
     /// With the whole list built anew for each shift.
-    fn all_anew(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
-        let allow = |stretches: &[Stretch], from: f64, to: f64, strip: Across| -> Vec<Stretch> {
-            let one = |s: &Stretch| -> Vec<Stretch> {
+    fn all_anew(stretches: &[LineStretch], knot_m: f64) -> Vec<LineStretch> {
+        let allow = |stretches: &[LineStretch], from: f64, to: f64, strip: Across| -> Vec<LineStretch> {
+            let one = |s: &LineStretch| -> Vec<LineStretch> {
                 let (inner_from, inner_to) = (s.from.max(from), s.to.min(to));
                 let Some(meet) = strip.meet(s.shift).filter(|_| inner_from < inner_to) else { return vec![*s] };
-                let wider = Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s };
-                let before = (s.from < inner_from).then_some(Stretch { to: inner_from, ..*s });
-                let behind = (inner_to < s.to).then_some(Stretch { from: inner_to, ..*s });
+                let wider = LineStretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s };
+                let before = (s.from < inner_from).then_some(LineStretch { to: inner_from, ..*s });
+                let behind = (inner_to < s.to).then_some(LineStretch { from: inner_to, ..*s });
                 before.into_iter().chain([wider]).chain(behind).collect()
             };
             stretches.iter().flat_map(one).collect()

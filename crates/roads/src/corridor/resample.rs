@@ -55,7 +55,7 @@ impl Curve for Interpolant {
 }
 
 /// A parametrised curve with edges across it.
-pub(crate) struct Track<'c, C> {
+pub(crate) struct EdgedCurve<'c, C> {
     /// Position and derivatives of the curve.
     pub(crate) curve: &'c C,
     /// Edges and centreline across the curve, over the same parameter.
@@ -73,7 +73,7 @@ struct Point {
     right_m: f64,
 }
 
-impl<C: Curve> Track<'_, C> {
+impl<C: Curve> EdgedCurve<'_, C> {
     /// The offset curve is C = c + o·n, with t and n the unit tangent and normal of c. Let v = |c′| be the speed, a =
     /// v(1 − κo) and b = o′. Then C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
     fn at(&self, u: f64) -> Point {
@@ -227,7 +227,8 @@ mod tests {
     #[test]
     fn a_curve_without_a_usable_length_has_two_stations_that_are_not_finite() {
         let profile = Profile { knot_m: 1.0, coefficients: vec![[1.0, -1.0, 0.0]; 4] }.cubics();
-        let stations = |length_m| Track { curve: &Straight(length_m), profile: &profile }.resample(0.0, 1.0, 1.0).0;
+        let stations =
+            |length_m| EdgedCurve { curve: &Straight(length_m), profile: &profile }.resample(0.0, 1.0, 1.0).0;
         let usual = stations(200.0);
         assert!(usual.len() == 201 && usual.x.iter().all(|x| x.is_finite()));
         for length_m in [1e9, 1e18, f64::INFINITY, f64::NAN] {

@@ -32,7 +32,7 @@ impl Across {
 
 /// A stretch of the line with one strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
+pub(crate) struct LineStretch {
     /// Arc length along the way's line.
     pub(crate) from: f64,
     pub(crate) to: f64,

@@ -3,14 +3,14 @@
 //! Only the part between a stroke's first and last edge is certified. Approach, lead-in and tail are driven. An edge
 //! that the extract cuts is entered straight, like any first edge. Turns off the stroke have corridors of their own.
 
-use super::course::{Course, DrivenLink, Link, Role};
-use super::laid::{LaidOut, Sections};
+use super::course::{ChainLine, ChainLink, DrivenLink, Role};
 use super::merge::Jog;
-use super::profile::{CHANGE_M, Gap, MIDDLE, limit_offset, profile};
-use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
+use super::profile::{CHANGE_M, MIDDLE, NarrowPlace, limit_offset, profile};
+use super::resample::{ArcLength, EdgedCurve, LEAST_OFFSET_FACTOR};
 use super::smooth::Smoothed;
 use super::spline::Cubics;
-use super::stretch::{Across, Stretch};
+use super::stretch::{Across, LineStretch};
+use super::stroke_layout::{Sections, StrokeLayout};
 use super::taper::Ramp;
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
 use crate::network::{Network, Stroke};
@@ -33,17 +33,17 @@ const MOST_CROSSING: f64 = 0.98;
 /// The corridor of a stroke, in a metric frame of its own.
 ///
 /// # Errors
-/// As [`LaidOut::new`] and [`LaidOut::corridor`].
+/// As [`StrokeLayout::new`] and [`StrokeLayout::corridor`].
 pub fn stroke_corridor(
     network: &Network,
     stroke: &Stroke,
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    LaidOut::new(network, stroke, params)?.corridor(&|edge| network.section(edge), policy)
+    StrokeLayout::new(network, stroke, params)?.corridor(&|edge| network.section(edge), policy)
 }
 
-impl LaidOut<'_> {
+impl StrokeLayout<'_> {
     /// The corridor with the cross sections that `sections` gives.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl LaidOut<'_> {
         let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
         let profile = profile.cubics();
 
-        let track = Track { curve: &smoothed.curve, profile: &profile };
+        let track = EdgedCurve { curve: &smoothed.curve, profile: &profile };
         let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
         if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
             return Err(UnknownReason::Geometry);
@@ -105,7 +105,7 @@ impl LaidOut<'_> {
 
 /// The tapers, in the order of the line.
 fn tapers(
-    stretches: &[Stretch],
+    stretches: &[LineStretch],
     jogs: &[Jog],
     ramps: &[Ramp],
     stations: &dyn Fn(f64, f64) -> std::ops::Range<usize>,
@@ -139,9 +139,9 @@ fn tapers(
 
 /// The strips without the tapers between them.
 struct Untapered {
-    stretches: Vec<Stretch>,
+    stretches: Vec<LineStretch>,
     aside: Vec<Ramp>,
-    gaps: Vec<Gap>,
+    gaps: Vec<NarrowPlace>,
     profile: Cubics<3>,
     arc: ArcLength,
 }
@@ -184,7 +184,7 @@ struct Cut<'c> {
 }
 
 impl Cut<'_> {
-    fn span(&self, one: &DrivenLink, link: &Link<'_>) -> EdgeSpan {
+    fn span(&self, one: &DrivenLink, link: &ChainLink<'_>) -> EdgeSpan {
         let c = self.corridor;
         let last = c.len() - 1;
         let first = ((self.arc.at(one.from) / c.spacing_m).floor() as usize).min(last);
@@ -216,12 +216,12 @@ fn all_finite(c: &Corridor) -> bool {
 
 /// One stretch per piece. A piece without width continues the previous one, or else the next one: the piece itself is
 /// `unknown`, but its neighbours' vehicles drive over it. `None` if no piece has a width.
-fn stretches(links: &[Link<'_>], driven: &[DrivenLink]) -> Option<Vec<Stretch>> {
+fn stretches(links: &[ChainLink<'_>], driven: &[DrivenLink]) -> Option<Vec<LineStretch>> {
     let mut known = driven.iter().find_map(|p| links[p.link].room)?;
     let stretches = driven.iter().map(|one| {
         known = links[one.link].room.unwrap_or(known);
         let link = &links[one.link];
-        Stretch {
+        LineStretch {
             from: one.from,
             to: one.to,
             strip: known.strip.moved(one.aside_m),
@@ -236,7 +236,7 @@ fn stretches(links: &[Link<'_>], driven: &[DrivenLink]) -> Option<Vec<Stretch>> 
 
 /// Narrow places of all pieces. Each passage is centred on the map's vertex, and the smoothed line passes a little
 /// beside it.
-fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoothed) -> Vec<Gap> {
+fn gaps(network: &Network, links: &[ChainLink<'_>], course: &ChainLine, smoothed: &Smoothed) -> Vec<NarrowPlace> {
     let mut gaps = Vec::new();
     for one in &course.driven {
         let link = &links[one.link];
@@ -251,7 +251,7 @@ fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoot
             let off = [link.points[vertex][0] - c[0], link.points[vertex][1] - c[1]];
             let lateral = (d[0] * off[1] - d[1] * off[0]) / d[0].hypot(d[1]).max(LEAST_SPEED);
             let half = 0.5 * f64::from(narrowing.passage_m).max(0.0);
-            gaps.push(Gap { at, room: Across { left_m: lateral + half, right_m: lateral - half } });
+            gaps.push(NarrowPlace { at, room: Across { left_m: lateral + half, right_m: lateral - half } });
         }
     }
     gaps

@@ -6,7 +6,7 @@
 //! sound because the strip stays, all along the taper, on mapped surface on the taper's side of the node.
 
 use super::spline::KNOT_M;
-use super::stretch::{Across, Stretch};
+use super::stretch::{Across, LineStretch};
 use crate::osm::facts::RoadClass;
 
 /// Metres along the road per metre across, by the speed S assumed for a class: MUTCD 2009, table 6H-4, with L = W·S for
@@ -67,7 +67,7 @@ pub(crate) fn share(t: f64) -> f64 {
 
 /// Removes from the stretches every sideways jump that a taper can take. Returns the ramps; strips plus ramps are the
 /// strips as given.
-pub(crate) fn take_jumps(stretches: &mut [Stretch]) -> Vec<Ramp> {
+pub(crate) fn take_jumps(stretches: &mut [LineStretch]) -> Vec<Ramp> {
     let given = stretches.to_vec();
     let mut ramps = Vec::new();
     let mut moved_m = 0.0;
@@ -93,7 +93,7 @@ fn jump(a: Across, b: Across) -> Option<f64> {
 
 /// The taper between stretches `k` and `k + 1`, if one is needed and there is road for it. It lies on the side of the
 /// wider surface: what is added to a road, or taken from it, tapers there. The lanes of both directions move along.
-fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
+fn taper(stretches: &[LineStretch], k: usize) -> Option<Ramp> {
     let (a, b) = (stretches.get(k)?, stretches.get(k + 1)?);
     let by_m = jump(a.strip, b.strip)?;
     if a.strip.within(b.shift) || b.strip.within(a.shift) {
@@ -105,7 +105,7 @@ fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
     let swept = narrower.hull(narrower.moved(by_m));
     // Where a road becomes one-way, the opposite lanes do not move along: a lane stays within those of its direction.
     let alike = a.two_way == b.two_way;
-    let allowed = |s: &Stretch, side: &Stretch| {
+    let allowed = |s: &LineStretch, side: &LineStretch| {
         s.two_way == side.two_way && swept.within(if alike { s.surface } else { s.shift })
     };
     let after_m = room_m(stretches, k, Way::On, &|s| allowed(s, b));
@@ -138,7 +138,7 @@ enum Wider {
     Neither,
 }
 
-fn wider(a: &Stretch, b: &Stretch) -> Wider {
+fn wider(a: &LineStretch, b: &LineStretch) -> Wider {
     let more_m = b.surface.width_m() - a.surface.width_m();
     match more_m {
         _ if more_m.abs() < ALIKE_M => Wider::Neither,
@@ -149,7 +149,7 @@ fn wider(a: &Stretch, b: &Stretch) -> Wider {
 
 /// Length from the node after stretch `k` on which the stretches allow a taper. It ends at the next jump, or halfway to
 /// a jump that may need the other half.
-fn room_m(stretches: &[Stretch], k: usize, way: Way, allowed: &dyn Fn(&Stretch) -> bool) -> f64 {
+fn room_m(stretches: &[LineStretch], k: usize, way: Way, allowed: &dyn Fn(&LineStretch) -> bool) -> f64 {
     let backwards = way == Way::Back;
     let (mut room_m, mut i) = (0.0, if backwards { k } else { k + 1 });
     while let Some(stretch) = stretches.get(i).filter(|stretch| allowed(stretch)) {

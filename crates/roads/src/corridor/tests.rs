@@ -6,8 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 
-use super::profile::{Gap, LEAST_WIDTH_M, profile};
-use super::stretch::{Across, Stretch};
+use super::profile::{LEAST_WIDTH_M, NarrowPlace, profile};
+use super::stretch::{Across, LineStretch};
 use super::*;
 use crate::network::{Edge, EdgeNo, Narrowing, Network, Road, Stroke};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Policy, RoadClass, Strip, WidthSource};
@@ -206,7 +206,7 @@ fn the_kerb_lane_moves_over_at_full_width_where_a_lane_is_added() {
 
 fn corridor_and_strip(network: &Network, stroke: &Stroke) -> (Corridor, Vec<[f64; 2]>) {
     let params = Params::default();
-    let laid = LaidOut::new(network, stroke, &params).unwrap();
+    let laid = StrokeLayout::new(network, stroke, &params).unwrap();
     let (made, strip) = laid.corridor_and_strip(&|edge| network.section(edge), Policy::Lane).unwrap();
     (made.corridor, strip)
 }
@@ -345,7 +345,7 @@ fn road() -> impl Strategy<Value = Vec<[f64; 2]>> {
     })
 }
 
-fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
+fn stretches() -> impl Strategy<Value = Vec<LineStretch>> {
     prop::collection::vec((1.0..120.0_f64, -4.0..4.0_f64, 2.5..8.0_f64, 0.0..4.0_f64, 0.0..4.0_f64), 1..12).prop_map(
         |v| {
             let mut from = 0.0;
@@ -355,7 +355,7 @@ fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
                     let shift = Across { left_m: strip.left_m + more_left, right_m: strip.right_m - more_right };
                     let surface = Across { left_m: shift.left_m + more_right, right_m: shift.right_m - more_left };
                     let two_way = more_left < 2.0;
-                    let s = Stretch { from, to: from + length, strip, shift, surface, two_way, ratio: 20.0 };
+                    let s = LineStretch { from, to: from + length, strip, shift, surface, two_way, ratio: 20.0 };
                     from += length;
                     s
                 })
@@ -385,7 +385,7 @@ proptest! {
 
     #[test]
     fn the_profile_never_leaves_the_strips(stretches in stretches(), at in 0.0..300.0_f64, passage in 0.0..6.0_f64) {
-        let gap = Gap { at, room: Across { left_m: 0.5 * passage, right_m: -0.5 * passage } };
+        let gap = NarrowPlace { at, room: Across { left_m: 0.5 * passage, right_m: -0.5 * passage } };
         let end = stretches.last().unwrap().to;
         let gaps = if at < end { vec![gap] } else { Vec::new() };
         let (p, tapers) = profile(&stretches, &[], &gaps);

@@ -3,7 +3,7 @@
 
 use super::Edge;
 use super::cut::Unusable;
-use super::restrictions::Reading;
+use super::restrictions::RuleReading;
 use crate::account::AccountRow;
 
 /// Counts of a run. `ways_read = ways_kept + Σ left out` and `directions = edges + not_driven`; areas add up likewise.
@@ -112,7 +112,7 @@ impl NetworkAccount {
     }
 
     /// Counts a restriction. `forbids` says how it was read, if it forbids anything.
-    pub(super) fn count_restriction(&mut self, on_network: bool, only: bool, forbids: Option<&Reading>) {
+    pub(super) fn count_restriction(&mut self, on_network: bool, only: bool, forbids: Option<&RuleReading>) {
         match (on_network, forbids) {
             (_, Some(reading)) => {
                 self.restrictions_kept += 1;

@@ -21,7 +21,7 @@ const MOST_CORNERS: usize = 10_000;
 
 /// The surface of roads at a junction, or an island.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Area {
+pub struct MappedArea {
     /// OSM way id.
     pub way_id: i64,
     /// Surface or island.
@@ -34,7 +34,7 @@ pub struct Area {
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Areas {
     /// Sorted by way id.
-    all: Vec<Area>,
+    all: Vec<MappedArea>,
     /// By node of the network: indices into `all` of the surfaces around it.
     around: FxHashMap<NodeId, Vec<u32>>,
     /// Islands from south to north without tall ones: their extents, and indices into `all`.
@@ -48,7 +48,7 @@ pub struct Areas {
 impl Areas {
     /// Finds the nodes of the network that each area surrounds. `all` is sorted by way id.
     #[must_use]
-    pub fn new(all: Vec<Area>, network: &Network) -> Self {
+    pub fn new(all: Vec<MappedArea>, network: &Network) -> Self {
         if all.is_empty() {
             return Self::default();
         }
@@ -78,12 +78,12 @@ impl Areas {
 
     /// All areas, sorted by way id.
     #[must_use]
-    pub fn all(&self) -> &[Area] {
+    pub fn all(&self) -> &[MappedArea] {
         &self.all
     }
 
     /// The surfaces around a node.
-    pub fn around(&self, node: NodeId) -> impl Iterator<Item = &Area> {
+    pub fn around(&self, node: NodeId) -> impl Iterator<Item = &MappedArea> {
         self.around.get(&node).into_iter().flatten().filter_map(|&index| self.all.get(index as usize))
     }
 
@@ -94,7 +94,7 @@ impl Areas {
     }
 
     /// The islands that may lie within the box around the given places, from south to north.
-    pub fn islands(&self, places: &[LonLat]) -> impl Iterator<Item = &Area> {
+    pub fn islands(&self, places: &[LonLat]) -> impl Iterator<Item = &MappedArea> {
         let around = Extent::of(places.iter().copied());
         self.islands_in(around).filter_map(|index| self.all.get(index as usize))
     }
@@ -120,7 +120,7 @@ fn height(extent: &Extent) -> i32 {
 }
 
 /// The areas of an extract with a usable ring, sorted by way id.
-pub(super) fn usable(areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) -> Vec<Area> {
+pub(super) fn usable(areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) -> Vec<MappedArea> {
     account.areas_read = areas.len() as u64;
     let mut usable = Vec::new();
     for RoadArea { id: way_id, kind, refs } in areas {
@@ -134,7 +134,7 @@ pub(super) fn usable(areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut Netw
         match ring {
             Some(ring) => {
                 account.islands_widened += u64::from(cut || !simple);
-                usable.push(Area { way_id, kind, ring });
+                usable.push(MappedArea { way_id, kind, ring });
             }
             None if cut => account.areas_cut += 1,
             None => account.areas_invalid += 1,
@@ -144,7 +144,7 @@ pub(super) fn usable(areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut Netw
 }
 
 /// Keeps the surfaces that lie around the network's nodes, and the islands near its roads. `usable` is sorted by way id.
-pub(super) fn keep(network: &mut Network, usable: Vec<Area>) {
+pub(super) fn keep(network: &mut Network, usable: Vec<MappedArea>) {
     let found = Areas::new(usable, network);
     let mut used: FxHashSet<u32> = found.around.values().flatten().copied().collect();
     if !found.without_islands() {
@@ -264,16 +264,16 @@ mod tests {
         assert!(!is_simple(&[at(0, 0), at(400, 0), at(0, 0), at(0, 0)]));
     }
 
-    fn rectangle(way_id: i64, [west, south]: [i32; 2], [wide, tall]: [i32; 2]) -> Area {
+    fn rectangle(way_id: i64, [west, south]: [i32; 2], [wide, tall]: [i32; 2]) -> MappedArea {
         let (east, north) = (west + wide, south + tall);
         let ring = vec![at(west, south), at(east, south), at(east, north), at(west, north), at(west, south)];
-        Area { way_id, kind: AreaKind::Island, ring }
+        MappedArea { way_id, kind: AreaKind::Island, ring }
     }
 
     /// A mistaken tag on an area of a degree must not make each search read all islands of a degree.
     #[test]
     fn a_tall_island_is_found_in_order_and_does_not_widen_the_search() {
-        let mut all: Vec<Area> = (0..2_000).map(|k| rectangle(k.into(), [0, 10_000 * k], [50, 100])).collect();
+        let mut all: Vec<MappedArea> = (0..2_000).map(|k| rectangle(k.into(), [0, 10_000 * k], [50, 100])).collect();
         all.push(rectangle(5_000, [-10, -70], [20, 10_000_000]));
         all.push(rectangle(5_001, [900, 0], [20, 20_000_000]));
         let areas = Areas::new(all.clone(), &Network::default());

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use super::cell::{Cell, ZOOM, corner_deg};
+use super::cell::{GridCell, ZOOM, corner_deg};
 use super::extent::Extent;
 
 /// How far beyond the cells around a block roads matter to it, metres (see `docs/decisions/cells.md`).
@@ -11,22 +11,22 @@ const HALO_M: f64 = 1000.0;
 
 /// A rectangle of cells.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Block {
+pub(super) struct CellBlock {
     x: RangeInclusive<u32>,
     y: RangeInclusive<u32>,
 }
 
-impl Block {
+impl CellBlock {
     /// The smallest rectangle with all of these cells, of which there is at least one.
-    fn around(cells: &[(Cell, u32)]) -> Self {
-        let range = |of: fn(&Cell) -> u32| {
+    fn around(cells: &[(GridCell, u32)]) -> Self {
+        let range = |of: fn(&GridCell) -> u32| {
             let all = || cells.iter().map(|(cell, _)| of(cell));
             all().min().unwrap_or(0)..=all().max().unwrap_or(0)
         };
         Self { x: range(|cell| cell.x), y: range(|cell| cell.y) }
     }
 
-    pub(super) fn has(&self, cell: Cell) -> bool {
+    pub(super) fn has(&self, cell: GridCell) -> bool {
         self.x.contains(&cell.x) && self.y.contains(&cell.y)
     }
 
@@ -58,22 +58,22 @@ impl Block {
 
 /// Divides the cells of a world, given with the number of their edges, into blocks with at most `most` edges where a cell has no more.
 /// Every cell is in exactly one block.
-pub(super) fn divide(cells: &BTreeMap<Cell, u32>, most: u64) -> Vec<Block> {
+pub(super) fn divide(cells: &BTreeMap<GridCell, u32>, most: u64) -> Vec<CellBlock> {
     let mut blocks = Vec::new();
-    let mut left: Vec<Vec<(Cell, u32)>> = vec![cells.iter().map(|(&cell, &edges)| (cell, edges)).collect()];
+    let mut left: Vec<Vec<(GridCell, u32)>> = vec![cells.iter().map(|(&cell, &edges)| (cell, edges)).collect()];
     while let Some(mut cells) = left.pop() {
-        let edges = |cells: &[(Cell, u32)]| cells.iter().map(|&(_, edges)| u64::from(edges)).sum::<u64>();
-        let Block { x, y } = Block::around(&cells);
+        let edges = |cells: &[(GridCell, u32)]| cells.iter().map(|&(_, edges)| u64::from(edges)).sum::<u64>();
+        let CellBlock { x, y } = CellBlock::around(&cells);
         if cells.is_empty() {
             continue;
         }
         if edges(&cells) <= most || cells.len() == 1 {
-            blocks.push(Block { x, y });
+            blocks.push(CellBlock { x, y });
             continue;
         }
         // Cut across the longer side, where the halves have most nearly the same number of edges.
         let wide = x.end() - x.start() >= y.end() - y.start();
-        let along = |cell: &Cell| if wide { cell.x } else { cell.y };
+        let along = |cell: &GridCell| if wide { cell.x } else { cell.y };
         cells.sort_unstable_by_key(|(cell, _)| (along(cell), *cell));
         let half = edges(&cells) / 2;
         let mut before = 0;
@@ -100,7 +100,7 @@ mod tests {
         fn every_cell_is_in_one_block(
             cells in prop::collection::btree_map((0_u32..40, 0_u32..40), 1_u32..900, 0..200), most in 1_u64..5000,
         ) {
-            let cells: BTreeMap<Cell, u32> = cells.into_iter().map(|((y, x), edges)| (Cell { y, x }, edges)).collect();
+            let cells: BTreeMap<GridCell, u32> = cells.into_iter().map(|((y, x), edges)| (GridCell { y, x }, edges)).collect();
             let blocks = divide(&cells, most);
             for cell in cells.keys() {
                 prop_assert_eq!(blocks.iter().filter(|block| block.has(*cell)).count(), 1);
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_surroundings_have_the_neighbours_and_a_kilometre_more() {
-        let block = Block { x: 1073..=1074, y: 699..=699 };
+        let block = CellBlock { x: 1073..=1074, y: 699..=699 };
         let extent = block.surroundings();
         let has = |(lon, lat): (f64, f64)| {
             let at = LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: (lat * 1e7) as i32 };
@@ -122,7 +122,7 @@ mod tests {
         };
         let ((west, north), (east, south)) = (corner_deg(1072, 698), corner_deg(1076, 701));
         // The neighbours of the last column are those of the first one.
-        let [first, last] = [0..=0, 2047..=2047].map(|x| Block { x, y: 699..=699 });
+        let [first, last] = [0..=0, 2047..=2047].map(|x| CellBlock { x, y: 699..=699 });
         assert!(first.needs(&last) && last.needs(&first));
         for (block, inside_deg, outside_deg) in [(&first, 179.83, 179.7), (&last, -179.83, -179.7)] {
             let has = |lon: f64| {
@@ -142,7 +142,7 @@ mod tests {
             assert_eq!(has(at), inside, "{at:?}");
         }
         // At the poles the outermost cells have no border.
-        let extent = Block { x: 0..=2047, y: 0..=2047 }.surroundings();
+        let extent = CellBlock { x: 0..=2047, y: 0..=2047 }.surroundings();
         assert!(extent.south <= -900_000_000 && extent.north >= 900_000_000);
     }
 }

@@ -12,14 +12,14 @@ pub(super) const ZOOM: u8 = 11;
 
 /// A square of the grid: a tile of zoom 11 in web Mercator, as maps on the web have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Cell {
+pub struct GridCell {
     /// Row, from the north.
     pub y: u32,
     /// Column, from the 180th meridian eastwards.
     pub x: u32,
 }
 
-impl Cell {
+impl GridCell {
     /// The cell of a position. Positions beyond the grid's northern and southern borders (85.05°) are in its outermost cells.
     #[must_use]
     pub fn of(position: LonLat) -> Self {
@@ -42,29 +42,29 @@ pub(super) fn corner_deg(x: i64, y: u32) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn cell(lon: f64, lat: f64) -> Cell {
-        Cell::of(LonLat { lon_e7: (lon * 1e7).round() as i32, lat_e7: (lat * 1e7).round() as i32 })
+    fn cell(lon: f64, lat: f64) -> GridCell {
+        GridCell::of(LonLat { lon_e7: (lon * 1e7).round() as i32, lat_e7: (lat * 1e7).round() as i32 })
     }
 
     #[test]
     fn cells_are_the_tiles_of_web_maps() {
         // Heidelberg's old bridge, by the formulas of the OpenStreetMap wiki, "Slippy map tilenames".
-        assert_eq!(cell(8.7096, 49.4144), Cell { y: 699, x: 1073 });
-        assert_eq!(cell(0.0, 0.0), Cell { y: 1024, x: 1024 });
-        assert_eq!(cell(-1e-7, 1e-7), Cell { y: 1023, x: 1023 });
+        assert_eq!(cell(8.7096, 49.4144), GridCell { y: 699, x: 1073 });
+        assert_eq!(cell(0.0, 0.0), GridCell { y: 1024, x: 1024 });
+        assert_eq!(cell(-1e-7, 1e-7), GridCell { y: 1023, x: 1023 });
     }
 
     #[test]
     fn a_cell_lies_between_its_corners() {
         let ((west, north), (east, south)) = (corner_deg(1073, 699), corner_deg(1074, 700));
-        assert_eq!(cell(west + 1e-6, north - 1e-6), Cell { y: 699, x: 1073 });
-        assert_eq!(cell(east - 1e-6, south + 1e-6), Cell { y: 699, x: 1073 });
-        assert_eq!(cell(east + 1e-6, south - 1e-6), Cell { y: 700, x: 1074 });
+        assert_eq!(cell(west + 1e-6, north - 1e-6), GridCell { y: 699, x: 1073 });
+        assert_eq!(cell(east - 1e-6, south + 1e-6), GridCell { y: 699, x: 1073 });
+        assert_eq!(cell(east + 1e-6, south - 1e-6), GridCell { y: 700, x: 1074 });
     }
 
     #[test]
     fn every_position_has_a_cell() {
-        assert_eq!(cell(-180.0, 90.0), Cell { y: 0, x: 0 });
-        assert_eq!(cell(180.0, -90.0), Cell { y: 2047, x: 2047 });
+        assert_eq!(cell(-180.0, 90.0), GridCell { y: 0, x: 0 });
+        assert_eq!(cell(180.0, -90.0), GridCell { y: 2047, x: 2047 });
     }
 }

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::areas::Area;
+use super::areas::MappedArea;
 use super::geometry::EARTH_RADIUS_M;
 use super::{Edge, EdgeNo, Network, Road, Stroke};
 use crate::osm::{LonLat, NodeId};
@@ -116,11 +116,11 @@ fn other_strokes(old: &Network, new: &Network, edges: &mut FxHashSet<i64>) {
 
 /// Adds the nodes near areas that only one network has in their form.
 fn near_changed_areas(old: &Network, new: &Network, nodes: &mut FxHashSet<NodeId>) {
-    let of = |network: &Network| -> FxHashMap<i64, Area> {
+    let of = |network: &Network| -> FxHashMap<i64, MappedArea> {
         network.areas.all().iter().map(|area| (area.way_id, area.clone())).collect()
     };
     let (before, after) = (of(old), of(new));
-    let only = |all: &FxHashMap<i64, Area>, others: &FxHashMap<i64, Area>| -> Vec<Area> {
+    let only = |all: &FxHashMap<i64, MappedArea>, others: &FxHashMap<i64, MappedArea>| -> Vec<MappedArea> {
         all.values().filter(|area| others.get(&area.way_id) != Some(area)).cloned().collect()
     };
     let changed = [only(&before, &after), only(&after, &before)].concat();
@@ -128,7 +128,7 @@ fn near_changed_areas(old: &Network, new: &Network, nodes: &mut FxHashSet<NodeId
         return;
     }
     let north = (NEAR_M / EARTH_RADIUS_M).to_degrees();
-    let near = |area: &Area, place: LonLat| {
+    let near = |area: &MappedArea, place: LonLat| {
         let (lon, lat) = place.degrees();
         let east = north / lat.to_radians().cos().abs().max(1e-6);
         let corners = || area.ring.iter().map(|corner| corner.degrees());

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::cell::Cell;
+use super::cell::GridCell;
 use super::corners;
 use super::cut::{CutWay, RoadPiece};
 use super::edge_id::edge_id;
@@ -22,7 +22,7 @@ const WAYS_PER_TASK: usize = 1024;
 const TASKS_PER_BATCH: usize = 128;
 
 /// The inputs for building ways.
-pub(super) struct Source<'s, P, S> {
+pub(super) struct WaySource<'s, P, S> {
     pub(super) ways: &'s Ways,
     pub(super) nodes: &'s NodeTable,
     pub(super) vertices: &'s Vertices,
@@ -30,7 +30,7 @@ pub(super) struct Source<'s, P, S> {
     pub(super) sections: &'s S,
 }
 
-impl<P, S> Source<'_, P, S>
+impl<P, S> WaySource<'_, P, S>
 where
     P: Fn(LonLat) -> Jurisdiction + Sync,
     S: Fn(&WayFacts, &Jurisdiction, Option<f64>) -> [CrossSection; 2] + Sync,
@@ -166,13 +166,13 @@ where
         let places = || vertices.iter().filter(|&&v| v != MISSING).map(|&v| self.position(v));
         let range = |of: fn(LonLat) -> i32| places().map(of).min().zip(places().map(of).max());
         let (Some(lon_e7), Some(lat_e7)) = (range(|p| p.lon_e7), range(|p| p.lat_e7)) else { return false };
-        Cell::of(LonLat { lon_e7: lon_e7.0, lat_e7: lat_e7.0 })
-            != Cell::of(LonLat { lon_e7: lon_e7.1, lat_e7: lat_e7.1 })
+        GridCell::of(LonLat { lon_e7: lon_e7.0, lat_e7: lat_e7.0 })
+            != GridCell::of(LonLat { lon_e7: lon_e7.1, lat_e7: lat_e7.1 })
     }
 
     /// Whether a line comes into another cell with the vertex of an index.
     fn enters_a_cell(&self, line: &[u32], at: usize) -> bool {
-        Cell::of(self.position(line[at])) != Cell::of(self.position(line[at - 1]))
+        GridCell::of(self.position(line[at])) != GridCell::of(self.position(line[at - 1]))
     }
 
     /// Vertices are located; others would be [`MISSING`].

@@ -10,14 +10,14 @@ use crate::osm::LonLat;
 pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// Geometry of every edge, for choosing continuations.
-pub(super) struct Geometry {
+pub(super) struct EdgeGeometries {
     /// Length, metres.
     pub(super) length_m: Vec<f32>,
     /// Outward directions of the edge at its first and at its last node, in degrees from east towards north.
     pub(super) outward_deg: Vec<[f32; 2]>,
 }
 
-impl Geometry {
+impl EdgeGeometries {
     /// Measures all edges. A heading is that of the chord over the first `reach_m` metres of an edge.
     pub(super) fn measure(network: &Network, reach_m: f64) -> Self {
         let (length_m, outward_deg) = network

@@ -8,16 +8,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::blocks::{self, Block};
+use super::blocks::{self, CellBlock};
 use super::border::Border;
-use super::edges::Source;
+use super::edges::WaySource;
 use super::extent::Extent;
 use super::portion::{Portion, PortionIndices};
-use super::restrictions::{self, Reading, Resolved};
+use super::restrictions::{self, Resolved, RuleReading};
 use super::stroke::{self, Chained};
 use super::vertices::{MISSING, Vertices};
 use super::ways::Ways;
-use super::{Area, Crossings, EdgeNo, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
+use super::{Crossings, EdgeNo, MappedArea, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
 use crate::osm::facts::{AreaKind, CrossSection, Jurisdiction, WayFacts};
 use crate::osm::{self, Extract, LonLat, NodeTable, StringPool};
 
@@ -28,7 +28,7 @@ pub struct Ground<P, S> {
     vertices: Vertices,
     restrictions: Vec<osm::Restriction>,
     /// Those with a usable ring, sorted by way id.
-    areas: Vec<Area>,
+    areas: Vec<MappedArea>,
     strings: StringPool,
     bbox_deg: Option<[f64; 4]>,
     /// What is counted of the extract as a whole.
@@ -40,7 +40,7 @@ pub struct Ground<P, S> {
 
 /// How the network of an extract is divided into blocks, and what is known of the whole network without it.
 pub struct Division {
-    blocks: Vec<Block>,
+    blocks: Vec<CellBlock>,
     /// By way, and one more: number of edges and roads of all ways before.
     edges_before: Vec<u32>,
     roads_before: Vec<u32>,
@@ -189,7 +189,8 @@ where
             let ways = if restriction.from.is_empty() { &restriction.to } else { &restriction.from };
             ways.iter().any(|way| known.contains(way))
         };
-        let meets = |area: &&Area| Extent::of(area.ring.iter().copied()).is_some_and(|extent| extent.meets(around));
+        let meets =
+            |area: &&MappedArea| Extent::of(area.ring.iter().copied()).is_some_and(|extent| extent.meets(around));
         let areas = self.areas.iter().filter(meets).cloned().collect();
         let (chained, resolved) = self.complete(&mut network, takes, areas);
         let owned = owned(&network, &block);
@@ -198,7 +199,7 @@ where
 
     /// The areas that any portion keeps, sorted by way id.
     #[must_use]
-    pub fn kept_areas(&self, division: &Division) -> Vec<Area> {
+    pub fn kept_areas(&self, division: &Division) -> Vec<MappedArea> {
         self.areas.iter().filter(|area| division.kept_areas.contains(&area.way_id)).cloned().collect()
     }
 
@@ -211,9 +212,9 @@ where
         account
     }
 
-    fn source(&self) -> Source<'_, P, S> {
+    fn source(&self) -> WaySource<'_, P, S> {
         let Self { ways, nodes, vertices, jurisdictions, sections, .. } = self;
-        Source { ways, nodes, vertices, jurisdictions, sections }
+        WaySource { ways, nodes, vertices, jurisdictions, sections }
     }
 
     /// The steps from edges to a network.
@@ -221,7 +222,7 @@ where
         &self,
         network: &mut Network,
         takes: impl Fn(&osm::Restriction) -> bool,
-        areas: Vec<Area>,
+        areas: Vec<MappedArea>,
     ) -> (Chained, Resolved) {
         let resolved = restrictions::resolve(network, &self.restrictions, &self.nodes, &self.vertices, takes);
         areas::keep(network, areas);
@@ -248,7 +249,7 @@ where
 }
 
 /// The relations that forbid something, as indices, each with how it was read.
-type Forbidding = BTreeMap<u32, Reading>;
+type Forbidding = BTreeMap<u32, RuleReading>;
 
 fn note_readings(forbidding: &mut Forbidding, portion: &Portion) {
     for restriction in portion.restrictions() {
@@ -267,7 +268,7 @@ impl Division {
     #[must_use]
     pub fn needs(&self, block: usize) -> Vec<u32> {
         let own = &self.blocks[block];
-        let needed = |(number, other): &(u32, &blocks::Block)| *number as usize != block && own.needs(other);
+        let needed = |(number, other): &(u32, &blocks::CellBlock)| *number as usize != block && own.needs(other);
         (0..).zip(&self.blocks).filter(needed).map(|(number, _)| number).collect()
     }
 
@@ -345,7 +346,7 @@ impl<'w> Numbers<'w> {
 }
 
 /// By edge: whether it is on a stroke that begins in the block.
-fn owned(network: &Network, block: &Block) -> Vec<bool> {
+fn owned(network: &Network, block: &CellBlock) -> Vec<bool> {
     let mut owned = vec![false; network.edges.len()];
     for stroke in &network.strokes {
         let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
@@ -357,7 +358,7 @@ fn owned(network: &Network, block: &Block) -> Vec<bool> {
     owned
 }
 
-fn count_areas<'a>(account: &mut NetworkAccount, kept: impl Iterator<Item = &'a Area>) {
+fn count_areas<'a>(account: &mut NetworkAccount, kept: impl Iterator<Item = &'a MappedArea>) {
     for area in kept {
         account.areas_kept += 1;
         account.islands_kept += u64::from(area.kind == AreaKind::Island);

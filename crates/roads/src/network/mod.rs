@@ -42,9 +42,9 @@ use std::num::NonZeroU8;
 use std::ops::Range;
 
 pub use account::NetworkAccount;
-pub use areas::{Area, Areas};
+pub use areas::{Areas, MappedArea};
 pub use build::{build, build_with};
-pub use cell::Cell;
+pub use cell::GridCell;
 pub use compare::Differences;
 pub use crossings::Crossings;
 pub use edge_no::EdgeNo;
@@ -58,7 +58,7 @@ pub use site::{Pieces, pieces};
 pub use splits::Splits;
 pub use stroke_options::StrokeOptions;
 pub use through::{destination_tag, destination_words, through};
-pub use title::Ends;
+pub use title::RoadEnds;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
 use crate::osm::{LonLat, NodeId, StringId, StringPool};
@@ -145,7 +145,7 @@ pub struct Stroke {
 
 /// A sequence of edges that no heavy goods vehicle may drive one right after the other.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Restriction {
+pub struct ForbiddenSequence {
     /// OSM relation id.
     pub relation_id: i64,
     /// Kind of the sign. A restriction `only_…` gives one entry for each movement that it forbids.
@@ -172,7 +172,7 @@ pub struct Network {
     /// Edges of strokes and approaches.
     pub stroke_edges: Vec<EdgeNo>,
     /// Turn restrictions, by relation.
-    pub restrictions: Vec<Restriction>,
+    pub restrictions: Vec<ForbiddenSequence>,
     /// Edges of restrictions.
     pub restriction_edges: Vec<EdgeNo>,
     /// Mapped surfaces of junctions.
@@ -185,7 +185,7 @@ pub struct Network {
     pub site: Site,
     /// Edges at the ends of unnamed roads, for titles.
     #[serde(skip)]
-    pub ends: Ends,
+    pub ends: RoadEnds,
     /// Names and refs.
     pub strings: StringPool,
 }
@@ -207,8 +207,8 @@ impl Network {
 
     /// The cell that owns an edge: that of its first position in the order of its way.
     #[must_use]
-    pub fn cell(&self, edge: &Edge) -> Cell {
-        Cell::of(self.shapes[edge.shape.start as usize])
+    pub fn cell(&self, edge: &Edge) -> GridCell {
+        GridCell::of(self.shapes[edge.shape.start as usize])
     }
 
     /// By edge: its stroke, as an index into `strokes`.

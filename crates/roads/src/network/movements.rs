@@ -149,7 +149,7 @@ impl Network {
 
     /// Restrictions of two edges: from, to and index of the restriction; sorted.
     fn forbidden_pairs(&self) -> Vec<(EdgeNo, EdgeNo, u32)> {
-        let pair = |(no, restriction): (u32, &super::Restriction)| match *self.sequence(restriction) {
+        let pair = |(no, restriction): (u32, &super::ForbiddenSequence)| match *self.sequence(restriction) {
             [from, to] => Some((from, to, no)),
             _ => None,
         };
@@ -160,7 +160,7 @@ impl Network {
 
     /// The edges of a restriction, in driving order.
     #[must_use]
-    pub fn sequence(&self, restriction: &super::Restriction) -> &[EdgeNo] {
+    pub fn sequence(&self, restriction: &super::ForbiddenSequence) -> &[EdgeNo] {
         &self.restriction_edges[restriction.edges.start as usize..restriction.edges.end as usize]
     }
 }

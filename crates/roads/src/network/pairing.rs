@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use super::corners::{REACH_M, is_sharp};
-use super::geometry::Geometry;
+use super::geometry::EdgeGeometries;
 use super::{Edge, EdgeNo, Network, Road, StrokeOptions, reverse};
 use crate::osm::facts::{Direction, Oneway};
 use crate::osm::{LonLat, NodeId};
@@ -45,7 +45,7 @@ impl Pairing {
     }
 
     /// Pairs the edges at every node.
-    pub(super) fn find(network: &Network, geometry: &Geometry, options: &StrokeOptions) -> Self {
+    pub(super) fn find(network: &Network, geometry: &EdgeGeometries, options: &StrokeOptions) -> Self {
         let mut ends: Vec<End> = (0..network.edges.len())
             .into_par_iter()
             .map(EdgeNo::at)
@@ -87,7 +87,7 @@ struct Candidate {
 
 struct Junction<'n> {
     network: &'n Network,
-    geometry: &'n Geometry,
+    geometry: &'n EdgeGeometries,
     options: &'n StrokeOptions,
     arriving: &'n [End],
     leaving: &'n [End],
@@ -96,7 +96,7 @@ struct Junction<'n> {
 }
 
 impl<'n> Junction<'n> {
-    fn new(network: &'n Network, geometry: &'n Geometry, options: &'n StrokeOptions, ends: &'n [End]) -> Self {
+    fn new(network: &'n Network, geometry: &'n EdgeGeometries, options: &'n StrokeOptions, ends: &'n [End]) -> Self {
         let (arriving, leaving) = ends.split_at(ends.partition_point(|end| !end.leaves));
         // A leaving edge and its arriving reverse are one end of road.
         let reversed = |end: &End| arriving.iter().any(|a| reverse(network, a.edge, end.edge));

@@ -3,10 +3,10 @@
 //! A portion owns the strokes that begin in its cells, with their edges, and the turns and restrictions that begin with these edges.
 //! Every one of the whole network is owned by exactly one portion. What a portion owns is as it is in the whole network.
 
-use super::blocks::Block;
-use super::restrictions::{Reading, Resolved};
+use super::blocks::CellBlock;
+use super::restrictions::{Resolved, RuleReading};
 use super::stroke::{Beginning, Chained};
-use super::{Edge, EdgeNo, Network, NetworkAccount, Restriction};
+use super::{Edge, EdgeNo, ForbiddenSequence, Network, NetworkAccount};
 use crate::osm::LonLat;
 
 /// A network with its place in the whole network. It can be written and read, so that another machine certifies it.
@@ -23,7 +23,7 @@ pub struct Portion {
 /// How a portion's indices continue in the whole network.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct PortionIndices {
-    pub(super) block: Block,
+    pub(super) block: CellBlock,
     /// By road.
     pub(super) roads: Vec<u32>,
     /// By edge.
@@ -38,9 +38,9 @@ pub struct PortionRestriction {
     /// Relation and rule of the extract, as indices: restrictions of the whole network are sorted by these, then by edges.
     pub rule: (u32, u32),
     /// How its rule was read.
-    pub(super) reading: Reading,
+    pub(super) reading: RuleReading,
     /// The restriction.
-    pub restriction: Restriction,
+    pub restriction: ForbiddenSequence,
     /// Its edges in driving order, as numbers in the whole network.
     pub edges: Vec<EdgeNo>,
 }
@@ -54,7 +54,7 @@ impl Portion {
     #[must_use]
     pub fn whole(network: Network) -> Self {
         let rules = (0..network.restrictions.len() as u32).map(|no| (no, 0)).collect();
-        let readings = vec![Reading::default(); network.restrictions.len()];
+        let readings = vec![RuleReading::default(); network.restrictions.len()];
         let chained = Chained { beginnings: Vec::new(), crowded: Vec::new() };
         Self::new(network, None, chained, Resolved { rules, readings, on_network: Vec::new() })
     }
@@ -80,7 +80,7 @@ impl Portion {
     /// Whether a position is in one of the portion's cells.
     #[must_use]
     pub fn has(&self, position: LonLat) -> bool {
-        self.indices.as_ref().is_none_or(|indices| indices.block.has(super::Cell::of(position)))
+        self.indices.as_ref().is_none_or(|indices| indices.block.has(super::GridCell::of(position)))
     }
 
     /// The edges that the portion owns, with their numbers here, in order.

@@ -15,7 +15,7 @@ use super::leaving::Leaving;
 use super::onward::Onward;
 use super::sides::{Meant, meant};
 use super::vertices::Vertices;
-use super::{EdgeNo, Network, Restriction, reverse};
+use super::{EdgeNo, ForbiddenSequence, Network, reverse};
 use crate::osm::facts::RestrictionKind;
 use crate::osm::{self, NodeId, NodeTable, Via};
 
@@ -30,14 +30,14 @@ pub(super) struct Resolved {
     /// By restriction of the network: the relation and its rule, as indices.
     pub(super) rules: Vec<(u32, u32)>,
     /// By restriction of the network: how its rule was read.
-    pub(super) readings: Vec<Reading>,
+    pub(super) readings: Vec<RuleReading>,
     /// Relations whose members can be driven one after the other, as indices.
     pub(super) on_network: Vec<u32>,
 }
 
 /// How a rule was read that its members do not spell out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Reading {
+pub(super) struct RuleReading {
     /// A way runs on over the node, and the value's side decides.
     pub(super) by_side: bool,
     /// A way runs on over the node, and the side does not decide: every reading applies.
@@ -50,7 +50,7 @@ pub(super) struct Reading {
     pub(super) no_destination: bool,
 }
 
-impl Reading {
+impl RuleReading {
     pub(super) fn and(&mut self, other: Self) {
         self.by_side |= other.by_side;
         self.any_side |= other.any_side;
@@ -72,7 +72,7 @@ pub(super) fn resolve(
     if restrictions.is_empty() {
         return resolved;
     }
-    let found: Vec<(usize, usize, Reading, Vec<EdgeNo>)> = {
+    let found: Vec<(usize, usize, RuleReading, Vec<EdgeNo>)> = {
         let leaving = Leaving::of(network);
         let resolver = Resolver { leaving: &leaving, arriving: OnceCell::new(), network, nodes, vertices };
         let mut found = Vec::new();
@@ -96,7 +96,7 @@ pub(super) fn resolve(
         let start = network.restriction_edges.len() as u32;
         network.restriction_edges.extend(edges);
         let edges = start..network.restriction_edges.len() as u32;
-        network.restrictions.push(Restriction {
+        network.restrictions.push(ForbiddenSequence {
             relation_id: of.id,
             kind: rule.kind,
             conditional: rule.conditional,
@@ -107,7 +107,7 @@ pub(super) fn resolve(
 }
 
 /// What a rule forbids, sorted, and how it was read.
-type Read = (Reading, Vec<Vec<EdgeNo>>);
+type Read = (RuleReading, Vec<Vec<EdgeNo>>);
 
 /// The role of a way in a restriction.
 #[derive(Clone, Copy, PartialEq)]
@@ -129,7 +129,7 @@ impl Resolver<'_> {
     /// What each rule forbids. `None` if the members are not on the network.
     fn read(&self, restriction: &osm::Restriction) -> Vec<Option<Read>> {
         let read = |kind: RestrictionKind| {
-            let mut reading = Reading::default();
+            let mut reading = RuleReading::default();
             let mut all = match &restriction.via {
                 Via::Nodes(nodes) => self.at_nodes(kind, restriction, nodes, &mut reading),
                 Via::Ways(ways) => self.over_ways(kind, restriction, ways, &mut reading),
@@ -147,7 +147,7 @@ impl Resolver<'_> {
         kind: RestrictionKind,
         restriction: &osm::Restriction,
         via: &[NodeId],
-        reading: &mut Reading,
+        reading: &mut RuleReading,
     ) -> Option<Vec<Vec<EdgeNo>>> {
         let nodes: Vec<NodeId> = match via {
             [] => self.meetings(restriction),
@@ -186,7 +186,13 @@ impl Resolver<'_> {
 
     /// By node: for each way, its edges that end there, or begin there if it is a `to`. Without ways, all edges there count as
     /// those of one way. A way that is at none of the nodes stands for the road that goes on to it.
-    fn at_each(&self, nodes: &[NodeId], ways: &[i64], member: Member, reading: &mut Reading) -> Vec<Vec<Vec<EdgeNo>>> {
+    fn at_each(
+        &self,
+        nodes: &[NodeId],
+        ways: &[i64],
+        member: Member,
+        reading: &mut RuleReading,
+    ) -> Vec<Vec<Vec<EdgeNo>>> {
         let leave = member == Member::To;
         if ways.is_empty() {
             let all =
@@ -227,7 +233,7 @@ impl Resolver<'_> {
         kind: RestrictionKind,
         from: &[Vec<EdgeNo>],
         to: &[Vec<EdgeNo>],
-        reading: &mut Reading,
+        reading: &mut RuleReading,
     ) -> Vec<(EdgeNo, EdgeNo)> {
         let mut all = Vec::new();
         for (f, t) in from.iter().flat_map(|f| to.iter().map(move |t| (f, t))) {
@@ -246,7 +252,7 @@ impl Resolver<'_> {
         node: NodeId,
         from: &[Vec<EdgeNo>],
         to: &[Vec<EdgeNo>],
-        reading: &mut Reading,
+        reading: &mut RuleReading,
     ) -> Vec<(EdgeNo, EdgeNo)> {
         let leaving = self.leaving_at(node);
         let mut all = Vec::new();
@@ -274,7 +280,7 @@ impl Resolver<'_> {
         kind: RestrictionKind,
         restriction: &osm::Restriction,
         via: &[i64],
-        reading: &mut Reading,
+        reading: &mut RuleReading,
     ) -> Option<Vec<Vec<EdgeNo>>> {
         let edges =
             |ways: &[i64]| ways.iter().flat_map(|&way| EdgeNo::each(self.edges_of(way))).collect::<Vec<EdgeNo>>();

@@ -17,22 +17,22 @@ const STRAIGHT_DEG: f64 = 45.0;
 const U_TURN_DEG: f64 = 135.0;
 
 /// A movement over a node: the edge before it and the edge after it.
-pub(super) type Pair = (EdgeNo, EdgeNo);
+pub(super) type EdgePair = (EdgeNo, EdgeNo);
 
 /// The movements that a value means among those that its members allow.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Meant {
     /// The members allow no choice.
-    Named(Vec<Pair>),
+    Named(Vec<EdgePair>),
     /// The side decides.
-    BySide(Vec<Pair>),
+    BySide(Vec<EdgePair>),
     /// The side does not decide, so each of them may be meant.
-    Any(Vec<Pair>),
+    Any(Vec<EdgePair>),
 }
 
 impl Meant {
     /// The movements.
-    pub(super) fn pairs(&self) -> &[Pair] {
+    pub(super) fn pairs(&self) -> &[EdgePair] {
         let (Self::Named(pairs) | Self::BySide(pairs) | Self::Any(pairs)) = self;
         pairs
     }
@@ -41,8 +41,8 @@ impl Meant {
 /// What a value means among the movements from the edges of one way into those of another one.
 pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[EdgeNo], to: &[EdgeNo]) -> Meant {
     let all = || from.iter().flat_map(|&f| to.iter().map(move |&t| (f, t)));
-    let back = |pair: &Pair| reverse(network, pair.0, pair.1);
-    let mut pairs: Vec<Pair> = match kind.turn {
+    let back = |pair: &EdgePair| reverse(network, pair.0, pair.1);
+    let mut pairs: Vec<EdgePair> = match kind.turn {
         // A U-turn on one way means its reversal, not the continuation past the node.
         RestrictedTurn::UTurn => all().filter(|pair| !same_way(network, *pair) || back(pair)).collect(),
         _ => all().filter(|pair| !back(pair)).collect(),
@@ -53,7 +53,7 @@ pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[EdgeNo], t
     if pairs.len() < 2 {
         return Meant::Named(pairs);
     }
-    let (fits, others): (Vec<Pair>, Vec<Pair>) =
+    let (fits, others): (Vec<EdgePair>, Vec<EdgePair>) =
         pairs.iter().copied().partition(|&pair| fits(kind.turn, angle_deg(network, pair)));
     match (fits.is_empty(), others.is_empty()) {
         (false, false) => Meant::BySide(fits),
@@ -61,7 +61,7 @@ pub(super) fn meant(network: &Network, kind: RestrictionKind, from: &[EdgeNo], t
     }
 }
 
-fn same_way(network: &Network, (from, to): Pair) -> bool {
+fn same_way(network: &Network, (from, to): EdgePair) -> bool {
     network.edges[from.index()].road == network.edges[to.index()].road
 }
 
@@ -78,7 +78,7 @@ fn fits(turn: RestrictedTurn, angle_deg: f64) -> bool {
 }
 
 /// The angle of a movement, degrees in −180..=180, positive to the left. Turning back on the road is 180.
-fn angle_deg(network: &Network, (from, to): Pair) -> f64 {
+fn angle_deg(network: &Network, (from, to): EdgePair) -> f64 {
     if reverse(network, from, to) {
         return 180.0;
     }

@@ -3,7 +3,7 @@
 //! A certificate is made over a stroke, so no kink stands where an edge ends, and a vehicle longer than an edge has its
 //! real approach. Movements that are not straight on are turns; `movements` lists them.
 
-use super::geometry::Geometry;
+use super::geometry::EdgeGeometries;
 use super::pairing::{NONE, Pairing};
 use super::{EdgeNo, Network, Stroke, StrokeOptions};
 
@@ -33,7 +33,7 @@ pub(super) struct Chained {
 /// Fills `strokes` and `stroke_edges` of a network without strokes. Strokes are sorted by their first edge. A closed
 /// stroke starts at its first edge in the network's order. It has no approach, because its own last edges serve as one.
 pub(super) fn chain(network: &mut Network, options: &StrokeOptions) -> Chained {
-    let geometry = Geometry::measure(network, options.heading_reach_m);
+    let geometry = EdgeGeometries::measure(network, options.heading_reach_m);
     let pairing = Pairing::find(network, &geometry, options);
     let road = Road { network, pairing: &pairing, geometry: &geometry, max_length_m: options.max_length_m };
     let chains = road.chains();
@@ -70,7 +70,7 @@ struct Chain {
 struct Road<'n> {
     network: &'n Network,
     pairing: &'n Pairing,
-    geometry: &'n Geometry,
+    geometry: &'n EdgeGeometries,
     max_length_m: f64,
 }
 
@@ -131,7 +131,7 @@ impl Road<'_> {
 
 /// Appends the edges that lead to `first`, in driving order. They go back along what continues into it, then along what
 /// a vehicle most plausibly comes from. They end when they are long enough or reach an edge already used.
-fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: EdgeNo, out: &mut Vec<EdgeNo>) {
+fn approach(pairing: &Pairing, geometry: &EdgeGeometries, approach_m: f64, first: EdgeNo, out: &mut Vec<EdgeNo>) {
     let start = out.len();
     let mut length_m = 0.0;
     let mut edge = pairing.before[first.index()];

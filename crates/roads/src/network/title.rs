@@ -21,9 +21,9 @@ const MOST_EDGES: usize = 200;
 
 /// The edges at each end of an unnamed road. They are found when a title is first asked for.
 #[derive(Debug, Clone, Default)]
-pub struct Ends(OnceLock<Vec<(NodeId, EdgeNo)>>);
+pub struct RoadEnds(OnceLock<Vec<(NodeId, EdgeNo)>>);
 
-impl Ends {
+impl RoadEnds {
     /// The edges that begin or end at a node.
     fn at<'n>(&'n self, network: &Network, node: NodeId) -> impl Iterator<Item = EdgeNo> + 'n {
         let all = self.0.get_or_init(|| Self::find(network));

@@ -11,9 +11,9 @@ use geo::orient::{Direction, Orient};
 use geo::{Area as _, BooleanOps, Euclidean, Length, LineString, MultiPolygon, Polygon, Simplify, unary_union};
 
 use super::LengthClass;
-use super::arm::{Across, Arm};
+use super::arm::{Arm, RoadEdges};
 use super::vector::{add, along, unit};
-use crate::corridor::{Area, outline};
+use crate::corridor::{PlaneArea, outline};
 use crate::osm::facts::Policy;
 
 /// Distance from the node within which the roads' shared part is searched, metres.
@@ -41,7 +41,7 @@ const MOST_CORNER_M: f64 = 20.0;
 pub(super) const ARC_STEP_RAD: f64 = 0.1;
 
 /// The data from which the area is made.
-pub(super) struct Ground<'a> {
+pub(super) struct TurnGround<'a> {
     pub(super) from: &'a Arm,
     pub(super) to: &'a Arm,
     pub(super) policy: Policy,
@@ -56,7 +56,7 @@ pub(super) struct Ground<'a> {
     pub(super) length_class: LengthClass,
 }
 
-impl Ground<'_> {
+impl TurnGround<'_> {
     /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
         let strip = |arm: &Arm| strip(arm, 0..arm.len(), &|k| arm.near_node(k, self.length_class), [0.0; 2]);
@@ -74,7 +74,7 @@ impl Ground<'_> {
     }
 
     /// Edges of the road as far as this turn may use it inside the junction.
-    fn edges<'a>(&self, arm: &'a Arm) -> &'a [Across] {
+    fn edges<'a>(&self, arm: &'a Arm) -> &'a [RoadEdges] {
         let near_side = (self.turn_rad < 0.0) != self.left_hand_traffic;
         if near_side && self.policy != Policy::Carriageway { &arm.direction } else { &arm.carriageway }
     }
@@ -228,7 +228,7 @@ pub(super) fn stretch(arm: &Arm, range: std::ops::Range<usize>) -> MultiPolygon 
 fn strip(
     arm: &Arm,
     range: std::ops::Range<usize>,
-    edges: &dyn Fn(usize) -> Across,
+    edges: &dyn Fn(usize) -> RoadEdges,
     prolonged_m: [f64; 2],
 ) -> Option<Polygon> {
     outline(&arm.line, range, edges, prolonged_m).map(|ring| polygon(&ring))
@@ -251,14 +251,14 @@ pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], length_class: L
 /// The boundary of an area as rings without vertices that add nothing. Each vertex that is left out lies within [`STRAIGHT_M`] of the side
 /// that replaces it. (Unions draw some corners twice, and neither vertex of such a corner may go because of the other.) A ring that would
 /// enclose other ground without them keeps all its vertices.
-pub(super) fn rings(area: &MultiPolygon) -> Area {
+pub(super) fn rings(area: &MultiPolygon) -> PlaneArea {
     let rings = area.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
     let open = |ring: &LineString| {
         let short = without_first(vertices(&ring.simplify(STRAIGHT_M)));
         let all = vertices(ring);
         if encloses_the_same(&short, &all) { short } else { all }
     };
-    Area { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
+    PlaneArea { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
 }
 
 /// The vertices of a closed ring, each once.
@@ -371,7 +371,7 @@ mod tests {
 
     use super::*;
 
-    fn ground_m2(area: &Area) -> f64 {
+    fn ground_m2(area: &PlaneArea) -> f64 {
         let rings = area.rings.iter().map(|ring| polygon(ring).unsigned_area());
         rings.enumerate().map(|(i, m2)| if i == 0 { m2 } else { -m2 }).sum()
     }

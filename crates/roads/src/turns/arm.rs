@@ -4,9 +4,9 @@
 //! from one into the other without a seam. Road edges are measured from the strip's edges without tapers: a road that
 //! goes on narrower beyond the junction is as wide as mapped up to it. A narrow place narrows the junction with it.
 
-use super::path::{Pose, hermite};
+use super::path::{PathPose, hermite};
 use super::{LengthClass, Opening};
-use crate::corridor::{Corridor, Frame, LaidOut, Params, Sections, StrokeCorridor};
+use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, StrokeLayout};
 use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{Policy, Strip};
 use crate::verdict::UnknownReason;
@@ -21,7 +21,7 @@ const WHOLE_STRIP_M: f64 = 60.0;
 const STEEPEST: f64 = 0.1;
 
 /// Edges of the road across a corridor's centreline, metres, positive left: `[left, right]`.
-pub(super) type Across = [f64; 2];
+pub(super) type RoadEdges = [f64; 2];
 
 /// A stroke's corridor with its frame and the edges of the road.
 #[derive(Debug, Clone)]
@@ -32,10 +32,10 @@ pub struct StrokeLine {
     pub made: StrokeCorridor,
     pub(super) closed: bool,
     /// One entry per station: all lanes of the direction, then everything between the kerbs.
-    direction: Vec<Across>,
-    carriageway: Vec<Across>,
+    direction: Vec<RoadEdges>,
+    carriageway: Vec<RoadEdges>,
     /// The same without steps: where the road becomes wider, it does so gradually.
-    gradual: [Vec<Across>; 2],
+    gradual: [Vec<RoadEdges>; 2],
 }
 
 impl StrokeLine {
@@ -59,9 +59,9 @@ impl StrokeLine {
         params: &Params,
     ) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
-        let (made, mapped) = LaidOut::new(network, facts, params)?.corridor_and_strip(sections, policy)?;
+        let (made, mapped) = StrokeLayout::new(network, facts, params)?.corridor_and_strip(sections, policy)?;
         let c = &made.corridor;
-        let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
+        let own: Vec<RoadEdges> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
         for span in &made.spans {
             let Some(edge) = network.edges.get(span.edge.index()) else { continue };
@@ -81,7 +81,7 @@ impl StrokeLine {
     /// A drawn road, which has nothing beside its corridor.
     pub(super) fn drawn(stroke: u32, made: StrokeCorridor) -> Self {
         let c = &made.corridor;
-        let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
+        let own: Vec<RoadEdges> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let [direction, carriageway, first, second] = [own.clone(), own.clone(), own.clone(), own];
         Self { stroke, made, closed: false, direction, carriageway, gradual: [first, second] }
     }
@@ -93,7 +93,7 @@ impl StrokeLine {
     }
 
     /// Edges of a strip at a station for half-widths: as [`Self::strip`], without steps.
-    fn gradual(&self, strip: Policy, station: usize) -> Across {
+    fn gradual(&self, strip: Policy, station: usize) -> RoadEdges {
         let c = &self.made.corridor;
         match strip {
             Policy::Lane => [c.left_m[station], -c.right_m[station]],
@@ -103,7 +103,7 @@ impl StrokeLine {
     }
 
     /// Edges of a strip at a station; never inside the corridor's own.
-    fn strip(&self, strip: Policy, station: usize) -> Across {
+    fn strip(&self, strip: Policy, station: usize) -> RoadEdges {
         let c = &self.made.corridor;
         match strip {
             Policy::Lane => [c.left_m[station], -c.right_m[station]],
@@ -121,7 +121,7 @@ impl StrokeLine {
 
 /// Half-widths of a corridor at a station, left and right, with the given part of what a strip has beyond them. The strip counts
 /// only where normals do not cross.
-fn widened(c: &Corridor, k: usize, strip: Across, opening: Opening) -> [f64; 2] {
+fn widened(c: &Corridor, k: usize, strip: RoadEdges, opening: Opening) -> [f64; 2] {
     let own = [c.left_m[k], c.right_m[k]];
     let wide = [strip[0], -strip[1]];
     [0, 1].map(|side| {
@@ -132,10 +132,10 @@ fn widened(c: &Corridor, k: usize, strip: Across, opening: Opening) -> [f64; 2] 
 }
 
 /// The edges of a strip without steps: nowhere farther out than they are, and nowhere inside the corridor.
-fn gradual(c: &Corridor, edges: &[Across]) -> Vec<Across> {
+fn gradual(c: &Corridor, edges: &[RoadEdges]) -> Vec<RoadEdges> {
     let mut out = edges.to_vec();
     let step_m = STEEPEST * c.spacing_m;
-    let limit = |out: &mut [Across], k: usize, beside: usize| {
+    let limit = |out: &mut [RoadEdges], k: usize, beside: usize| {
         let [left, right] = out[beside];
         out[k] = [
             out[k][0].min(left + step_m).max(c.left_m[k].min(edges[k][0])),
@@ -148,7 +148,7 @@ fn gradual(c: &Corridor, edges: &[Across]) -> Vec<Across> {
 }
 
 /// The edges of `strip`, where `base` has its edges at `own`; never inside `own`.
-fn wider(own: Across, base: Option<Strip>, strip: Option<Strip>) -> Across {
+fn wider(own: RoadEdges, base: Option<Strip>, strip: Option<Strip>) -> RoadEdges {
     let (Some(base), Some(strip)) = (base, strip) else { return own };
     let left = f64::from(strip.left_m - base.left_m).max(0.0);
     let right = f64::from(strip.right_m - base.right_m).min(0.0);
@@ -156,7 +156,7 @@ fn wider(own: Across, base: Option<Strip>, strip: Option<Strip>) -> Across {
 }
 
 /// The outer edges of two strips.
-fn outer(a: Across, b: Across) -> Across {
+fn outer(a: RoadEdges, b: RoadEdges) -> RoadEdges {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
@@ -166,10 +166,10 @@ pub(super) struct Arm {
     /// Stations with the corridor's own half-widths.
     pub(super) line: Corridor,
     /// Edges of the strip that the turn may use, for its area and, without steps, for half-widths.
-    pub(super) strip: Vec<Across>,
-    gradual: Vec<Across>,
-    pub(super) direction: Vec<Across>,
-    pub(super) carriageway: Vec<Across>,
+    pub(super) strip: Vec<RoadEdges>,
+    gradual: Vec<RoadEdges>,
+    pub(super) direction: Vec<RoadEdges>,
+    pub(super) carriageway: Vec<RoadEdges>,
     /// Index of the node's station in `line`.
     pub(super) node: usize,
     /// The stroke's station that comes first in `line`.
@@ -296,7 +296,7 @@ impl Arm {
 
     /// Edges of the turn's strip at a station, wherever paths leave and join: the whole strip near the node, and the
     /// corridor's own far from it.
-    pub(super) fn near_node(&self, k: usize, length_class: LengthClass) -> Across {
+    pub(super) fn near_node(&self, k: usize, length_class: LengthClass) -> RoadEdges {
         let away_m = k.abs_diff(self.node) as f64 * self.line.spacing_m - WHOLE_STRIP_M;
         let opening =
             if k < self.node { length_class.opening_before(away_m) } else { length_class.opening_after(away_m) };
@@ -319,7 +319,7 @@ impl Arm {
     }
 
     /// The pose `left_m` to the left of a place between stations.
-    pub(super) fn pose(&self, station: f64, left_m: f64) -> Pose {
+    pub(super) fn pose(&self, station: f64, left_m: f64) -> PathPose {
         let k = (station.max(0.0) as usize).min(self.len() - 1);
         let next = (k + 1).min(self.len() - 1);
         let t = if next > k { (station - k as f64).clamp(0.0, 1.0) } else { 0.0 };
@@ -332,7 +332,7 @@ impl Arm {
         };
         let heading = self.line.heading[k] + t * (self.line.heading[next] - self.line.heading[k]);
         let (sin, cos) = heading.sin_cos();
-        Pose { at: [at[0] - left_m * sin, at[1] + left_m * cos], heading }
+        PathPose { at: [at[0] - left_m * sin, at[1] + left_m * cos], heading }
     }
 
     /// The place `left_m` to the left of a station.
@@ -375,11 +375,11 @@ mod tests {
     }
 
     /// The edges at a station, metres to the left of the map's line, which leads east.
-    fn across(line: &StrokeLine, edges: &[Across], k: usize) -> Across {
+    fn across(line: &StrokeLine, edges: &[RoadEdges], k: usize) -> RoadEdges {
         edges[k].map(|left_m| line.made.corridor.y[k] + left_m)
     }
 
-    fn near(a: Across, b: Across) -> bool {
+    fn near(a: RoadEdges, b: RoadEdges) -> bool {
         (a[0] - b[0]).abs() < 0.02 && (a[1] - b[1]).abs() < 0.02
     }
 

@@ -5,7 +5,7 @@
 use super::LengthClass;
 use super::area::segments_cross;
 use super::arm::Arm;
-use super::code::Shape;
+use super::code::PathShape;
 use super::path::{self, wrapped};
 use super::vector::along;
 
@@ -49,7 +49,7 @@ impl Arms {
     }
 
     /// Stations at which a path's corner begins and ends. A lane shift is measured from the node.
-    pub(super) fn corner(&self, shape: &Shape) -> [f64; 2] {
+    pub(super) fn corner(&self, shape: &PathShape) -> [f64; 2] {
         let (from, to) = (&self.from, &self.to);
         let nodes = [from.node as f64, to.node as f64];
         let [a, b] = if shape.shares.is_some() { self.meeting.unwrap_or(nodes) } else { nodes };
@@ -63,7 +63,7 @@ impl Arms {
 
     /// The line of a path: out to the side, round the corner, back to the middle. Its points are about `step_m` apart.
     /// `None` if the roads leave no room for it.
-    pub(super) fn line(&self, shape: &Shape, step_m: f64) -> Option<PathLine> {
+    pub(super) fn line(&self, shape: &PathShape, step_m: f64) -> Option<PathLine> {
         let (from, to) = (&self.from, &self.to);
         let corner = self.corner(shape);
         let Some(shares) = shape.shares else {

@@ -38,7 +38,7 @@ const SPLAY_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
 /// The parameters of a path. Of each pair, the first one is for the approach and the second one for the departure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct PathShape {
     /// Distances from the place where the two lines meet (of a lane shift: from the node), metres.
     pub(super) from_corner_m: [f64; 2],
     /// Shares of the angle in the transitions. `None` for a lane shift, which uses the distances alone.
@@ -55,13 +55,13 @@ pub(super) struct Shape {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct PathCode {
     pub(super) shift: bool,
-    /// In the order of [`Shape`]'s fields.
+    /// In the order of [`PathShape`]'s fields.
     pub(super) steps: [i16; PARAMETERS],
 }
 
 impl PathCode {
     /// The code nearest to a shape.
-    pub(super) fn nearest(shape: &Shape) -> Self {
+    pub(super) fn nearest(shape: &PathShape) -> Self {
         let shares = shape.shares.unwrap_or_default();
         let pairs = [
             (shape.from_corner_m, DISTANCE_M),
@@ -87,9 +87,9 @@ impl PathCode {
         self
     }
 
-    pub(super) fn shape(&self) -> Shape {
+    pub(super) fn shape(&self) -> PathShape {
         let pair = |first: usize, step: f64| [0, 1].map(|i| f64::from(self.steps[first + i]) * step);
-        Shape {
+        PathShape {
             from_corner_m: pair(0, DISTANCE_M),
             shares: (!self.shift).then(|| pair(2, SHARE)),
             aside_m: pair(4, ASIDE_M),

@@ -14,9 +14,9 @@ use super::islands;
 use super::junction::Junction;
 use super::path::STEP_M;
 use super::rays::{Boundary, Widths};
-use super::roundabout::Passage;
+use super::roundabout::PreparedPassage;
 use super::{LengthClass, TurnPath, family};
-use crate::corridor::{Area, Frame};
+use crate::corridor::{Frame, PlaneArea};
 use crate::network::Network;
 use crate::verdict::UnknownReason;
 
@@ -35,7 +35,7 @@ pub struct TurnCorridors {
     /// mapped.
     pub kerb_radius_m: Option<f64>,
     /// The area's boundary.
-    rings: Arc<Area>,
+    rings: Arc<PlaneArea>,
     /// The area with the straight road beyond the ends of both roads: a path may join its road at the very end.
     opened: MultiPolygon,
     way: Way,
@@ -45,7 +45,7 @@ pub struct TurnCorridors {
 #[derive(Debug, Clone, PartialEq)]
 enum Way {
     Direct(Box<Arms>),
-    Passage(Box<Passage>),
+    Passage(Box<PreparedPassage>),
 }
 
 impl TurnCorridors {
@@ -59,7 +59,7 @@ impl TurnCorridors {
         Self::on(area, kerb_radius_m, network, frame, complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
     }
 
-    pub(super) fn over(passage: Passage, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
+    pub(super) fn over(passage: PreparedPassage, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
         let (area, kerb_radius_m) = passage.area();
         Self::on(area, kerb_radius_m, network, frame, passage.turn_rad(), Way::Passage(Box::new(passage)))
     }
@@ -142,7 +142,7 @@ impl TurnCorridors {
     }
 
     /// The boundary of the area for planning.
-    pub(super) fn opened(&self) -> Area {
+    pub(super) fn opened(&self) -> PlaneArea {
         rings(&self.opened)
     }
 }

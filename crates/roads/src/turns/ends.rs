@@ -11,7 +11,7 @@ use super::islands;
 use super::path::{self, STEP_M};
 use super::rays::Widths;
 use super::{Joint, LengthClass, TurnPath};
-use crate::corridor::{Area, AreaSpan, Corridor, open_ends};
+use crate::corridor::{AreaSpan, Corridor, PlaneArea, open_ends};
 
 /// Turns tighter than the first value (metres) have stations as close as the second (metres). Bounds are then as tight
 /// as in wider turns.
@@ -43,7 +43,7 @@ impl Ends<'_> {
         code: i64,
         points: &[[f64; 2]],
         mut widths: Widths,
-        area: &Arc<Area>,
+        area: &Arc<PlaneArea>,
     ) -> Option<TurnPath> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
@@ -106,7 +106,7 @@ impl Ends<'_> {
 
     /// The stations at which the junction's area counts: from shortly before the path leaves its road until all of the
     /// vehicle has joined the other one. `None` if the corridor ends at once.
-    fn area(&self, corridor: &Corridor, turn: &Range<usize>, area: &Arc<Area>) -> Option<AreaSpan> {
+    fn area(&self, corridor: &Corridor, turn: &Range<usize>, area: &Arc<PlaneArea>) -> Option<AreaSpan> {
         let stations = |m: f64| (m / corridor.spacing_m).ceil() as usize;
         let joined = turn.end.saturating_sub(1);
         let start = turn.start.saturating_sub(stations(BEFORE_M));

@@ -3,7 +3,7 @@
 //! centrelines, or swing out to the far side before and after the turn, as drivers of long vehicles do.
 
 use super::arms::Arms;
-use super::code::{PathCode, Shape};
+use super::code::{PathCode, PathShape};
 
 /// Distances from the place where the two lines meet, metres. A turn of 90° that takes 12 m of each line has a radius
 /// of about 10 m.
@@ -71,7 +71,7 @@ pub(super) enum RingEnd {
 /// The few shapes at one end of a roundabout's passage, by number. The ring bends away
 /// from the turn, so its tangent meets the road farther from the node than the path touches the ring. On the road's
 /// side the next larger distance is therefore used.
-pub(super) fn few(arms: &Arms, end: RingEnd) -> Vec<Shape> {
+pub(super) fn few(arms: &Arms, end: RingEnd) -> Vec<PathShape> {
     let sides = |road_m: f64, ring_m: f64| match end {
         RingEnd::Entry => [road_m, ring_m],
         RingEnd::Exit => [ring_m, road_m],
@@ -87,8 +87,8 @@ pub(super) fn few(arms: &Arms, end: RingEnd) -> Vec<Shape> {
 }
 
 /// A path that takes the given shares of the room on the outside.
-fn swung(arms: &Arms, from_corner_m: [f64; 2], swing: [f64; 2], share: f64) -> Shape {
-    let mut shape = Shape { shares: Some([share; 2]), ..shifted(from_corner_m) };
+fn swung(arms: &Arms, from_corner_m: [f64; 2], swing: [f64; 2], share: f64) -> PathShape {
+    let mut shape = PathShape { shares: Some([share; 2]), ..shifted(from_corner_m) };
     let (corner, turn_rad) = (arms.corner(&shape), arms.turn_rad());
     for (i, arm) in [&arms.from, &arms.to].into_iter().enumerate() {
         // In a right turn the outside is to the left of travel.
@@ -99,6 +99,6 @@ fn swung(arms: &Arms, from_corner_m: [f64; 2], swing: [f64; 2], share: f64) -> S
     shape
 }
 
-fn shifted(from_corner_m: [f64; 2]) -> Shape {
-    Shape { from_corner_m, shares: None, aside_m: [0.0; 2], swing_m: SWING_M, splay_rad: [0.0; 2] }
+fn shifted(from_corner_m: [f64; 2]) -> PathShape {
+    PathShape { from_corner_m, shares: None, aside_m: [0.0; 2], swing_m: SWING_M, splay_rad: [0.0; 2] }
 }

@@ -4,7 +4,7 @@ use geo::{MultiPolygon, Polygon};
 
 use super::LengthClass;
 use super::TurnParams;
-use super::area::Ground;
+use super::area::TurnGround;
 use super::arm::{Arm, StrokeLine};
 use super::arms::{Arms, MEET_M};
 use super::crossing::{MOST_NODES, parts, passed};
@@ -82,7 +82,7 @@ impl Junction {
 
     /// The drivable area, and the assumed radius of its kerb return, if there is one.
     pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
-        let ground = Ground {
+        let ground = TurnGround {
             from: &self.arms.from,
             to: &self.arms.to,
             policy: self.policy,

@@ -17,7 +17,7 @@
 //! | `vector` | places and directions in the plane |
 //! | `area` | the drivable area as polygons |
 //! | `crossing` | what the other roads of the junction add to it |
-//! | `drawn` | a corner between two drawn roads, without a map |
+//! | `drawn_corner` | a corner between two drawn roads, without a map |
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `code` | a path's parameters in one integer |
 //! | `arms` | the two roads of a turn, and the path of each code |
@@ -43,7 +43,7 @@ mod code;
 mod complex;
 mod corridors;
 mod crossing;
-mod drawn;
+mod drawn_corner;
 mod ends;
 mod facts;
 mod family;
@@ -63,12 +63,12 @@ use std::ops::Range;
 
 pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
-pub use drawn::DrawnCorner;
+pub use drawn_corner::DrawnCorner;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub use islands::cut_out_of_route;
 pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes, junction_places};
 pub use kerbs::Kerbs;
-pub use planner::{Planned, Planner};
+pub use planner::{PlannedPath, TurnPlanner};
 pub use turn_no::TurnNo;
 
 use crate::corridor::{AreaSpan, Corridor, Params};
@@ -315,7 +315,7 @@ pub fn turn_on<'l>(
     match (network.passage_kind(through), through.first()) {
         (Some(PassageKind::Roundabout), Some(&arc)) => {
             let passage =
-                roundabout::Passage::new(network, turn, [from, line(arc)?, to], policy, params, length_class)?;
+                roundabout::PreparedPassage::new(network, turn, [from, line(arc)?, to], policy, params, length_class)?;
             TurnCorridors::over(passage, network, frame)
         }
         (Some(PassageKind::Complex), _) => TurnCorridors::across(

@@ -8,12 +8,12 @@ use super::vector::along;
 
 /// A place, and the heading there in radians from x towards y.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pose {
+pub(super) struct PathPose {
     pub(super) at: [f64; 2],
     pub(super) heading: f64,
 }
 
-impl Pose {
+impl PathPose {
     pub(super) fn forward(&self) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
         [cos, sin]
@@ -44,7 +44,7 @@ pub(super) fn wrapped(angle: f64) -> f64 {
 /// The turn from `a` to `b`. Each transition has its share of the angle, and the arc has the rest. It is as wide as the
 /// shorter tangent allows, and straight along the rest of the longer tangent. Points are about `step_m` apart. `None`
 /// if the tangents do not meet between `a` and `b`.
-pub(super) fn corner(a: Pose, b: Pose, shares: [f64; 2], step_m: f64) -> Option<Vec<[f64; 2]>> {
+pub(super) fn corner(a: PathPose, b: PathPose, shares: [f64; 2], step_m: f64) -> Option<Vec<[f64; 2]>> {
     let turned = wrapped(b.heading - a.heading);
     if !(LEAST_CORNER_RAD..=MOST_CORNER_RAD).contains(&turned.abs()) || shares[0] + shares[1] > 1.0 + 1e-9 {
         return None;
@@ -155,7 +155,7 @@ impl UnitTurn {
 }
 
 /// The quintic from `a` to `b` with zero curvature at its ends. `None` if it would bend as sharply as a corner.
-pub(super) fn shift(a: Pose, b: Pose, step_m: f64) -> Option<Vec<[f64; 2]>> {
+pub(super) fn shift(a: PathPose, b: PathPose, step_m: f64) -> Option<Vec<[f64; 2]>> {
     let chord = (b.at[0] - a.at[0]).hypot(b.at[1] - a.at[1]);
     let ahead = (b.at[0] - a.at[0]) * a.forward()[0] + (b.at[1] - a.at[1]) * a.forward()[1];
     if !(chord > 4.0 && ahead > 0.7 * chord && wrapped(b.heading - a.heading).abs() < 1.0) {
@@ -204,10 +204,10 @@ mod tests {
     fn a_corner_ends_where_and_as_it_shall() {
         for turned in [0.2, 0.8, FRAC_PI_2, 2.0, 2.8] {
             for (sign, shares) in [(1.0, [0.25; 2]), (-1.0, [0.25; 2]), (1.0, [0.1, 0.5]), (-1.0, [0.6, 0.3])] {
-                let a = Pose { at: [3.0, -2.0], heading: 0.4 };
+                let a = PathPose { at: [3.0, -2.0], heading: 0.4 };
                 let (before, after) = (32.0, 41.0);
                 let v = along(a.at, a.forward(), before);
-                let mut b = Pose { at: v, heading: a.heading + sign * turned };
+                let mut b = PathPose { at: v, heading: a.heading + sign * turned };
                 b.at = along(v, b.forward(), after);
                 let points = corner(a, b, shares, STEP_M).unwrap();
                 let end = points.last().unwrap();
@@ -221,10 +221,10 @@ mod tests {
 
     #[test]
     fn a_corner_with_a_short_straight_line_ends_where_it_shall() {
-        let a = Pose { at: [0.0; 2], heading: 0.0 };
+        let a = PathPose { at: [0.0; 2], heading: 0.0 };
         for unequal_m in [0.001, 0.05, 0.1, 0.2, 0.24, 0.26] {
             for tangents in [[20.0 + unequal_m, 20.0], [20.0, 20.0 + unequal_m]] {
-                let b = Pose { at: tangents, heading: FRAC_PI_2 };
+                let b = PathPose { at: tangents, heading: FRAC_PI_2 };
                 let points = corner(a, b, [0.2; 2], STEP_M).unwrap();
                 let end = points.last().unwrap();
                 assert!((end[0] - b.at[0]).hypot(end[1] - b.at[1]) < 1e-3, "{tangents:?}: {end:?}");
@@ -234,8 +234,8 @@ mod tests {
 
     #[test]
     fn a_right_angle_without_transitions_is_a_quarter_of_a_circle() {
-        let a = Pose { at: [0.0; 2], heading: 0.0 };
-        let b = Pose { at: [12.0, 12.0], heading: FRAC_PI_2 };
+        let a = PathPose { at: [0.0; 2], heading: 0.0 };
+        let b = PathPose { at: [12.0, 12.0], heading: FRAC_PI_2 };
         for p in corner(a, b, [0.0; 2], STEP_M).unwrap() {
             assert!((p[0].hypot(p[1] - 12.0) - 12.0).abs() < 1e-4, "{p:?}");
         }
@@ -243,10 +243,10 @@ mod tests {
 
     #[test]
     fn lanes_that_do_not_meet_ahead_have_no_corner() {
-        let a = Pose { at: [0.0; 2], heading: 0.0 };
-        assert!(corner(a, Pose { at: [-5.0, 5.0], heading: FRAC_PI_2 }, [0.2; 2], STEP_M).is_none());
-        assert!(corner(a, Pose { at: [20.0, 1.0], heading: 0.0 }, [0.2; 2], STEP_M).is_none());
-        let shifted = shift(a, Pose { at: [40.0, 2.0], heading: 0.0 }, STEP_M).unwrap();
+        let a = PathPose { at: [0.0; 2], heading: 0.0 };
+        assert!(corner(a, PathPose { at: [-5.0, 5.0], heading: FRAC_PI_2 }, [0.2; 2], STEP_M).is_none());
+        assert!(corner(a, PathPose { at: [20.0, 1.0], heading: 0.0 }, [0.2; 2], STEP_M).is_none());
+        let shifted = shift(a, PathPose { at: [40.0, 2.0], heading: 0.0 }, STEP_M).unwrap();
         assert!(sharpest(&shifted) < 0.01);
     }
 }

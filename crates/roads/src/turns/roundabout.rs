@@ -10,7 +10,7 @@ use geo::{BooleanOps, MultiPolygon};
 use super::area::stretch;
 use super::arm::{Arm, StrokeLine};
 use super::arms::PathLine;
-use super::code::Shape;
+use super::code::PathShape;
 use super::family::{FEW_NUMBERS, RingEnd, few};
 use super::junction::Junction;
 use super::path::{STEP_M, hermite};
@@ -27,18 +27,18 @@ const LEAST_AHEAD_M: f64 = 0.5 * STEP_M;
 
 /// A passage, prepared.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Passage {
+pub(super) struct PreparedPassage {
     pub(super) entry: Junction,
     pub(super) exit: Junction,
-    entries: Vec<Shape>,
-    exits: Vec<Shape>,
+    entries: Vec<PathShape>,
+    exits: Vec<PathShape>,
     ring: Ring,
     /// Whether the exit lies beyond the seam of the ring.
     beyond: bool,
     pub(super) strokes: [u32; 2],
 }
 
-impl Passage {
+impl PreparedPassage {
     pub(super) fn new(
         network: &Network,
         TurnEdges { movement, through }: TurnEdges<'_>,

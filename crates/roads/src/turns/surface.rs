@@ -6,7 +6,7 @@
 use geo::{MultiPolygon, Polygon, unary_union};
 
 use crate::corridor::Frame;
-use crate::network::{Area, Network, Road};
+use crate::network::{MappedArea, Network, Road};
 use crate::osm::facts::AreaKind;
 use crate::osm::{LonLat, NodeId};
 
@@ -17,7 +17,7 @@ pub(super) fn is_mapped(network: &Network, node: NodeId, roads: [&Road; 2]) -> b
 
 /// The surface around a node between roads, in a metric frame. `None` if it is not mapped.
 pub(super) fn surface(network: &Network, node: NodeId, roads: &[&Road], frame: Frame) -> Option<MultiPolygon> {
-    let polygon = |area: &Area| {
+    let polygon = |area: &MappedArea| {
         let corners = frame.forward(&area.ring).ok()?;
         Some(super::area::polygon(&corners))
     };
@@ -31,7 +31,7 @@ pub(super) fn beside_the_map(network: &Network, node: NodeId, frame: Frame) -> V
     network.site.surfaces(node).iter().filter_map(polygon).collect()
 }
 
-fn surfaces<'a>(network: &'a Network, node: NodeId, roads: &[&Road]) -> impl Iterator<Item = &'a Area> {
-    let of_them = move |area: &&Area| roads.iter().any(|road| area.kind == AreaKind::Road(road.class));
+fn surfaces<'a>(network: &'a Network, node: NodeId, roads: &[&Road]) -> impl Iterator<Item = &'a MappedArea> {
+    let of_them = move |area: &&MappedArea| roads.iter().any(|road| area.kind == AreaKind::Road(road.class));
     network.areas.around(node).filter(of_them)
 }

@@ -15,11 +15,11 @@ use super::mend::Parted;
 use super::sections::{Section, sections};
 use super::stretch::ROUNDS;
 use super::suppositions::Suppositions;
-use crate::assemble::{PartKind, Way};
+use crate::assemble::{DrivenWay, PartKind};
 use crate::graph::Access;
 use crate::obstacles::Refutation;
 use crate::stop::{Stop, Stopped};
-use crate::whole::Certified;
+use crate::whole::CertifiedWay;
 
 /// A leg between two turns that is as much longer than the vehicle parts a way, metres.
 const APART_M: f64 = 80.0;
@@ -28,7 +28,7 @@ impl Fitter {
     /// Fits a way. `access` says what has a price.
     pub(crate) fn fit(
         &mut self,
-        way: &Way<'_>,
+        way: &DrivenWay<'_>,
         access: &Access,
         stop: &Stop,
     ) -> Result<Result<Fitted, Unfit>, Stopped> {
@@ -71,13 +71,13 @@ impl Fitter {
         })
     }
 
-    fn sections(&self, way: &Way<'_>) -> Vec<Section> {
+    fn sections(&self, way: &DrivenWay<'_>) -> Vec<Section> {
         let long_m = self.driver.model.vehicle.length_m + APART_M;
         sections(&self.roads.network, &self.roads.movements, way, long_m)
     }
 
     /// A way with the passages, suppositions and paths of its sections.
-    pub(super) fn joined(&self, way: &Way<'_>, sections: &[Section], own: &[Fitting]) -> Fitting {
+    pub(super) fn joined(&self, way: &DrivenWay<'_>, sections: &[Section], own: &[Fitting]) -> Fitting {
         let mut whole = Fitting::new(&self.base, way);
         whole.drive.over.clear();
         sections.iter().zip(own).for_each(|(section, own)| whole.take_over(own, section.first));
@@ -160,7 +160,12 @@ impl Fitter {
 
     /// The way under what is supposed, if it is safe. What is supposed counts as if it were measured: when it is, the same search with nothing
     /// supposed finds the same. Edges and turns need not be safe by themselves.
-    fn as_measured(&mut self, way: &Way<'_>, supposed: &Suppositions, stop: &Stop) -> Result<Option<Fitted>, Stopped> {
+    fn as_measured(
+        &mut self,
+        way: &DrivenWay<'_>,
+        supposed: &Suppositions,
+        stop: &Stop,
+    ) -> Result<Option<Fitted>, Stopped> {
         let sections = self.sections(way);
         // A certificate over the whole takes longest. Where a section fails it is not tried.
         let tried = self.each_as_measured(&sections, supposed, stop)?;
@@ -210,10 +215,10 @@ impl Fitter {
     }
 
     /// The way under what is supposed, if it is safe when everything is made anew.
-    pub(super) fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<Certified>, Stopped> {
+    pub(super) fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<CertifiedWay>, Stopped> {
         fitting.supposed.apply(network_of(&mut self.roads));
         let mut fresh = self.new_whole();
-        let way = Way { drive: &fitting.drive, start: fitting.start, end: fitting.end };
+        let way = DrivenWay { drive: &fitting.drive, start: fitting.start, end: fitting.end };
         fresh.prove(&way, &fitting.choices, stop)
     }
 }

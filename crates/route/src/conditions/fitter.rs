@@ -6,13 +6,13 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::suppositions::Suppositions;
-use crate::assemble::{PartKind, Way};
+use crate::assemble::{DrivenWay, PartKind};
 use crate::drive::Drive;
 use crate::driver::Driver;
 use crate::network::{self, EdgeNo, Network};
 use crate::pieces::Choices;
 use crate::roads::Roads;
-use crate::whole::{Certified, Whole};
+use crate::whole::{CertifiedWay, Whole};
 
 /// Fits ways, and keeps what it has found out about edges and turns. Its answers do not depend on earlier ones.
 pub(crate) struct Fitter {
@@ -23,7 +23,7 @@ pub(crate) struct Fitter {
     /// The widths that edges need.
     pub(super) needs_m: FxHashMap<EdgeNo, Option<f64>>,
     /// What turns need; `None` if nothing does.
-    pub(super) turns: FxHashMap<TurnKey, Option<Suppositions>>,
+    pub(super) turns: FxHashMap<TurnWidths, Option<Suppositions>>,
     /// Sections with what their edges and turns need by themselves, with enough to be safe, and with the least that was found for it.
     pub(super) supposed: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
     pub(super) safe: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
@@ -38,13 +38,13 @@ pub(crate) struct Fitter {
 pub(super) type SectionKey = (Vec<EdgeNo>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
 
 /// The edges of a turn, with the widths of the roads beside it in centimetres.
-pub(super) type TurnKey = (Vec<EdgeNo>, Vec<i64>);
+pub(super) type TurnWidths = (Vec<EdgeNo>, Vec<i64>);
 
 /// A way that is certified if everything supposed holds.
 pub(crate) struct Fitted {
     /// The edges. Turns that are driven as one are one passage.
     pub(crate) drive: Drive,
-    pub(crate) certified: Certified,
+    pub(crate) certified: CertifiedWay,
     pub(crate) supposed: Suppositions,
     /// Whether the search with nothing supposed finds the same, once everything is measured exactly as supposed.
     pub(crate) suffices: bool,
@@ -67,7 +67,7 @@ pub(super) struct Fitting {
 }
 
 impl Fitting {
-    pub(super) fn new(base: &Arc<network::Site>, way: &Way<'_>) -> Self {
+    pub(super) fn new(base: &Arc<network::Site>, way: &DrivenWay<'_>) -> Self {
         Self {
             drive: way.drive.clone(),
             start: way.start,
@@ -79,7 +79,7 @@ impl Fitting {
     }
 
     /// The way as it is certified, where measurements exactly as supposed suffice.
-    pub(super) fn fitted(self, certified: Certified) -> Fitted {
+    pub(super) fn fitted(self, certified: CertifiedWay) -> Fitted {
         Fitted { drive: self.drive, certified, supposed: self.supposed, suffices: true }
     }
 

@@ -5,7 +5,7 @@ use super::failing::failing;
 use super::fitter::{Fitted, Fitter, Fitting};
 use super::sections::Section;
 use super::suppositions::Suppositions;
-use crate::assemble::Way;
+use crate::assemble::DrivenWay;
 use crate::stop::{Stop, Stopped};
 
 /// How often more is supposed.
@@ -14,7 +14,7 @@ const MENDS: usize = 4;
 /// A way and its sections.
 #[derive(Clone, Copy)]
 pub(super) struct Parted<'a> {
-    pub(super) way: &'a Way<'a>,
+    pub(super) way: &'a DrivenWay<'a>,
     pub(super) sections: &'a [Section],
     /// By section, what makes it safe without regard to how much that is.
     pub(super) more: &'a [Suppositions],

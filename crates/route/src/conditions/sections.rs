@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::joint;
-use crate::assemble::Way;
+use crate::assemble::DrivenWay;
 use crate::drive::Drive;
 use crate::network::{Movements, Network};
 
@@ -25,14 +25,14 @@ pub(super) struct Section {
 
 impl Section {
     /// The section as a way.
-    pub(super) fn way(&self) -> Way<'_> {
-        Way { drive: &self.drive, start: self.start, end: self.end }
+    pub(super) fn way(&self) -> DrivenWay<'_> {
+        DrivenWay { drive: &self.drive, start: self.start, end: self.end }
     }
 }
 
 /// The sections of a way in driving order. A turn keeps `long_m` metres of road before and after it, or half of what lies between it and the
 /// next turn. A road that is longer is a section without turns.
-pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, long_m: f64) -> Vec<Section> {
+pub(super) fn sections(network: &Network, movements: &Movements, way: &DrivenWay<'_>, long_m: f64) -> Vec<Section> {
     let drive = way.drive;
     let turns = joint::turns(movements, drive);
     let mut sections = Vec::new();
@@ -86,7 +86,7 @@ struct DrivenEdge {
 }
 
 impl DrivenEdge {
-    fn of(network: &Network, way: &Way<'_>, at: usize) -> Self {
+    fn of(network: &Network, way: &DrivenWay<'_>, at: usize) -> Self {
         let edges = &way.drive.edges;
         let start = if at == 0 { way.start } else { 0.0 };
         let end = if at + 1 == edges.len() { way.end } else { 1.0 };

@@ -6,7 +6,7 @@ use super::failing::{Failing, failing};
 use super::fitter::{Fitter, Fitting, Unfit, network_of};
 use super::joint;
 use super::sections::Section;
-use crate::assemble::{PartKind, Way};
+use crate::assemble::{DrivenWay, PartKind};
 use crate::graph::Access;
 use crate::obstacles::Refutation;
 use crate::pieces::TurnEnds;
@@ -109,7 +109,7 @@ impl Fitter {
         };
         let (whole, _) = self.whole.insert((going, fitting.supposed.clone()));
         let Fitting { drive, start, end, choices, .. } = fitting;
-        whole.look(&Way { drive, start: *start, end: *end }, choices, stop)
+        whole.look(&DrivenWay { drive, start: *start, end: *end }, choices, stop)
     }
 
     /// Certifies ways on the roads as they are now.

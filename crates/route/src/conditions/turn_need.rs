@@ -11,7 +11,7 @@ use crate::osm::facts::Policy;
 use crate::osm::{LonLat, NodeId};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::turns::{LengthClass, Planner, StrokeLine, TurnCorridors, TurnEdges, turn_on};
+use crate::turns::{LengthClass, StrokeLine, TurnCorridors, TurnEdges, TurnPlanner, turn_on};
 use crate::verdict::UnknownReason;
 
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
@@ -147,7 +147,7 @@ impl Turning<'_> {
     pub(super) fn hope(&self, network: &mut Network, supposed: &mut Suppositions) -> bool {
         let generous = self.generous(network, supposed);
         generous.apply(network);
-        let seeds = |made: TurnCorridors| Planner::new(&made).best_seeds(&self.driver.model.vehicle, 1);
+        let seeds = |made: TurnCorridors| TurnPlanner::new(&made).best_seeds(&self.driver.model.vehicle, 1);
         let driven = self.made(network).is_some_and(|made| !seeds(made).is_empty());
         *supposed = generous;
         driven
@@ -174,7 +174,7 @@ impl Turning<'_> {
         if fits(&made, model, options) {
             return Some(Look::Cheap);
         }
-        let seeds = Planner::new(&made).best_seeds(&model.vehicle, 1);
+        let seeds = TurnPlanner::new(&made).best_seeds(&model.vehicle, 1);
         let near = seeds.first().is_some_and(|seed| seed.score_m >= -HOPELESS_M);
         (near && self.passes(network, Look::Thorough)).then_some(Look::Thorough)
     }

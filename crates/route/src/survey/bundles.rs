@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use rayon::prelude::*;
 
-use super::component::{Component, Scratch};
+use super::component::{Component, FloodBuffers};
 use super::joints::{CLOSED, Item, Joints, OPEN, Sense};
 use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
@@ -40,7 +40,7 @@ impl Bundle {
 
 /// What bundles are looked for in.
 #[derive(Clone, Copy)]
-pub(super) struct Field<'a> {
+pub(super) struct BundleSearch<'a> {
     pub(super) joints: &'a Joints,
     pub(super) prices: &'a [u32],
     pub(super) component: &'a Component,
@@ -49,7 +49,7 @@ pub(super) struct Field<'a> {
     pub(super) by_place: &'a [Vec<Item>],
 }
 
-impl Field<'_> {
+impl BundleSearch<'_> {
     /// All bundles that open something, the best first.
     pub(super) fn bundles(&self, stop: &Stop) -> Result<Vec<Bundle>, Stopped> {
         let (there, back) = (Ways::find(self, Sense::Ahead), Ways::find(self, Sense::Back));
@@ -77,7 +77,7 @@ impl Field<'_> {
         }
         let all: Vec<(Vec<Item>, f64)> = priced.into_iter().collect();
         let rated = all.into_par_iter().map_init(
-            || Scratch::new(self.joints),
+            || FloodBuffers::new(self.joints),
             |scratch, (items, cost)| {
                 stop.check()?;
                 let opens_m = self.component.joined_m(self.joints, self.prices, &items, self.lengths_m, scratch);
@@ -91,7 +91,7 @@ impl Field<'_> {
 
     /// What items open by themselves. `None` if it is next to nothing.
     pub(super) fn rated(&self, items: Vec<Item>) -> Option<Bundle> {
-        let mut scratch = Scratch::new(self.joints);
+        let mut scratch = FloodBuffers::new(self.joints);
         let opens_m = self.component.joined_m(self.joints, self.prices, &items, self.lengths_m, &mut scratch);
         let cost = self.cost(&items);
         (opens_m >= LEAST_M).then_some(Bundle { items, opens_m, cost })
@@ -99,7 +99,7 @@ impl Field<'_> {
 
     /// The bundle without what opens nothing more.
     pub(super) fn needed(&self, bundle: &Bundle) -> Bundle {
-        let mut scratch = Scratch::new(self.joints);
+        let mut scratch = FloodBuffers::new(self.joints);
         let mut items = bundle.items.clone();
         let mut dearest = bundle.items.clone();
         dearest.sort_by_key(|&item| Reverse(self.prices[item as usize]));
@@ -151,8 +151,8 @@ struct Ways {
 const NONE: u32 = u32::MAX;
 
 impl Ways {
-    fn find(field: &Field<'_>, sense: Sense) -> Self {
-        let Field { joints, prices, component, .. } = field;
+    fn find(field: &BundleSearch<'_>, sense: Sense) -> Self {
+        let BundleSearch { joints, prices, component, .. } = field;
         let edges = joints.edges();
         let mut ways = Self { cm: vec![u32::MAX; edges], last: vec![NONE; edges], links: Vec::new() };
         let mut queue = BinaryHeap::new();

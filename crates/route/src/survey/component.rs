@@ -1,6 +1,6 @@
 //! The component of the roads in which a vehicle can drive from everywhere to everywhere, and what joins it when more is open.
 
-use super::joints::{CLOSED, Item, Joints, OPEN, Sense, Step};
+use super::joints::{CLOSED, Item, JointStep, Joints, OPEN, Sense};
 use crate::network::EdgeNo;
 
 /// The roads from which one edge can be reached and that can be reached from it.
@@ -12,7 +12,7 @@ pub(super) struct Component {
 }
 
 /// Room for one flood after another, without clearing between them.
-pub(super) struct Scratch {
+pub(super) struct FloodBuffers {
     round: u32,
     extra: Vec<u32>,
     there: Vec<u32>,
@@ -20,7 +20,7 @@ pub(super) struct Scratch {
     open: Vec<EdgeNo>,
 }
 
-impl Scratch {
+impl FloodBuffers {
     pub(super) fn new(joints: &Joints) -> Self {
         let edges = joints.edges();
         Self { round: 0, extra: vec![0; joints.items()], there: vec![0; edges], back: vec![0; edges], open: Vec::new() }
@@ -35,7 +35,7 @@ impl Component {
             let mut open = vec![edge];
             seen[edge.index()] = true;
             while let Some(at) = open.pop() {
-                let mut visit = |step: Step, next: EdgeNo| {
+                let mut visit = |step: JointStep, next: EdgeNo| {
                     let usable = prices[step.item as usize] == OPEN && prices[next.index()] == OPEN;
                     if usable && !std::mem::replace(&mut seen[next.index()], true) {
                         open.push(next);
@@ -70,10 +70,10 @@ impl Component {
         prices: &[u32],
         items: &[Item],
         lengths_m: &[f64],
-        scratch: &mut Scratch,
+        scratch: &mut FloodBuffers,
     ) -> f64 {
         scratch.round += 1;
-        let Scratch { round, extra, there, back, open } = scratch;
+        let FloodBuffers { round, extra, there, back, open } = scratch;
         for &item in items.iter().filter(|&&item| prices[item as usize] != CLOSED) {
             extra[item as usize] = *round;
         }
@@ -86,7 +86,7 @@ impl Component {
             for &item in items {
                 // Where the item is an edge, any step onto it; else its own step.
                 let edge = (item as usize) < joints.edges();
-                let from_edge: Vec<Step> = match (edge, ahead) {
+                let from_edge: Vec<JointStep> = match (edge, ahead) {
                     (true, true) => joints.before(EdgeNo::new(item)).collect(),
                     (true, false) => joints.after(EdgeNo::new(item)).collect(),
                     (false, _) => joints.step(item).into_iter().collect(),
@@ -103,7 +103,7 @@ impl Component {
             let mut done = 0;
             while let Some(&at) = open.get(done) {
                 done += 1;
-                let mut visit = |step: Step, next: EdgeNo| {
+                let mut visit = |step: JointStep, next: EdgeNo| {
                     let new = !known[next.index()] && seen[next.index()] != *round;
                     if new && is_open(step.item) && is_open(next.get()) {
                         seen[next.index()] = *round;

@@ -32,7 +32,7 @@ pub(super) const CLOSED: u32 = u32::MAX;
 
 /// A step from the end of one edge to the beginning of another one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct JointStep {
     pub(super) from: EdgeNo,
     pub(super) to: EdgeNo,
     /// The movement or passage.
@@ -42,7 +42,7 @@ pub(super) struct Step {
 /// All steps, by the edge before them and by the edge after them.
 pub(super) struct Joints {
     edges: usize,
-    steps: Vec<Step>,
+    steps: Vec<JointStep>,
     /// By edge: the end of its steps in `steps`.
     after: Vec<u32>,
     /// Steps in order of the edge after them, and by edge the end of them.
@@ -62,8 +62,8 @@ impl Joints {
         let edges = network.edges.len();
         let (all, passages) = (movements.all(), movements.passages());
         let pairs = all.iter().map(|m| (m.from, m.to)).chain(passages.iter().map(|p| (p.from, p.to)));
-        let mut steps: Vec<Step> =
-            (edges as u32..).zip(pairs).map(|(item, (from, to))| Step { from, to, item }).collect();
+        let mut steps: Vec<JointStep> =
+            (edges as u32..).zip(pairs).map(|(item, (from, to))| JointStep { from, to, item }).collect();
         steps.sort_unstable_by_key(|step| (step.from, step.item));
         let mut into: Vec<u32> = (0..steps.len() as u32).collect();
         into.sort_by_key(|&step| steps[step as usize].to);
@@ -110,16 +110,16 @@ impl Joints {
     }
 
     /// The step of an item that is no edge.
-    pub(super) fn step(&self, item: Item) -> Option<Step> {
+    pub(super) fn step(&self, item: Item) -> Option<JointStep> {
         let place = self.of_item.get((item as usize).checked_sub(self.edges)?)?;
         self.steps.get(*place as usize).copied()
     }
 
-    pub(super) fn after(&self, edge: EdgeNo) -> impl Iterator<Item = Step> + '_ {
+    pub(super) fn after(&self, edge: EdgeNo) -> impl Iterator<Item = JointStep> + '_ {
         self.steps[range(&self.after, edge)].iter().copied()
     }
 
-    pub(super) fn before(&self, edge: EdgeNo) -> impl Iterator<Item = Step> + '_ {
+    pub(super) fn before(&self, edge: EdgeNo) -> impl Iterator<Item = JointStep> + '_ {
         self.into[range(&self.before, edge)].iter().map(|&step| self.steps[step as usize])
     }
 

@@ -11,7 +11,7 @@ mod pairs;
 mod region;
 mod report;
 
-pub use pairs::{Pair, Pairs, survey_pairs};
+pub use pairs::{Pairs, PlacePair, survey_pairs};
 pub use region::survey_region;
 pub use report::{SURVEY_COLUMNS, SURVEY_SCOPE, SurveyLine};
 
@@ -40,7 +40,7 @@ pub struct Survey {
     /// What is reachable without any measurement.
     pub before: f64,
     /// The best steps, in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<SurveyStep>,
     /// Places at the top of the ranking for which nothing would do, or what would do was not found.
     pub hopeless: usize,
     /// Whether the search ended before as many steps were found as asked for, although more may be there.
@@ -49,7 +49,7 @@ pub struct Survey {
 
 /// Measurements that open something together.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct SurveyStep {
     /// The places, each with at least one condition.
     pub places: Vec<Vec<Condition>>,
     /// What the step opens if all steps before it hold.
@@ -58,7 +58,7 @@ pub struct Step {
     pub reachable: f64,
 }
 
-impl Step {
+impl SurveyStep {
     /// The conditions of all its places.
     pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
         self.places.iter().flatten()

@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::joints::{Item, Joints, Sense};
 use crate::assemble::movement;
-use crate::certify::{Job, MOST_KERB_M, Touched, TurnJob, certify_some_turns, certify_strokes, edge_need};
+use crate::certify::{Dependents, Job, MOST_KERB_M, TurnJob, certify_some_turns, certify_strokes, edge_need};
 use crate::conditions::{BESIDE_M, Condition, ConditionAt, Suppositions, Turning};
 use crate::drive::{Drive, Join};
 use crate::driver::Driver;
@@ -65,7 +65,7 @@ pub(super) struct Opened {
 }
 
 /// Items that nothing opens.
-pub(super) struct Hopeless(pub(super) Vec<Item>);
+pub(super) struct HopelessItems(pub(super) Vec<Item>);
 
 impl Opener {
     pub(super) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>, joints: &Joints) -> Self {
@@ -114,7 +114,7 @@ impl Opener {
         items: &[Item],
         permits: &Permits,
         stop: &Stop,
-    ) -> Result<Result<Suppositions, Hopeless>, Stopped> {
+    ) -> Result<Result<Suppositions, HopelessItems>, Stopped> {
         let (on_edges, turns): (Vec<Item>, Vec<Item>) =
             items.iter().partition(|&&item| (item as usize) < joints.edges());
         let edges: Vec<EdgeNo> = on_edges.iter().copied().map(EdgeNo::new).collect();
@@ -133,17 +133,17 @@ impl Opener {
             self.level(&mut supposed);
             if supposed.raises(&self.chosen) {
                 // Two values for one place would contradict each other in the register.
-                return Ok(Err(Hopeless(if turns.is_empty() { on_edges } else { turns })));
+                return Ok(Err(HopelessItems(if turns.is_empty() { on_edges } else { turns })));
             }
             let failed = self.not_turned(&turns, &supposed, &verdicts);
             if failed.is_empty() {
                 return Ok(Ok(supposed));
             }
             if round == ROUNDS || !self.suppose_more(joints, &failed, &edges_only, &mut supposed) {
-                return Ok(Err(Hopeless(failed)));
+                return Ok(Err(HopelessItems(failed)));
             }
         }
-        Ok(Err(Hopeless(items.to_vec())))
+        Ok(Err(HopelessItems(items.to_vec())))
     }
 
     /// Supposes for each edge the width that it needs.
@@ -152,7 +152,7 @@ impl Opener {
         edges: &[EdgeNo],
         supposed: &mut Suppositions,
         stop: &Stop,
-    ) -> Result<Result<(), Hopeless>, Stopped> {
+    ) -> Result<Result<(), HopelessItems>, Stopped> {
         let strip = self.settings.policy;
         let need = |&edge: &EdgeNo| {
             stop.check()?;
@@ -169,7 +169,7 @@ impl Opener {
         let of = |edge: &EdgeNo| self.widths_m.get(edge).copied().flatten();
         let hopeless: Vec<Item> = edges.iter().filter(|edge| of(edge).is_none()).map(|edge| edge.get()).collect();
         if !hopeless.is_empty() {
-            return Ok(Err(Hopeless(hopeless)));
+            return Ok(Err(HopelessItems(hopeless)));
         }
         let needs: Vec<(EdgeNo, f64)> = edges.iter().filter_map(|edge| Some((*edge, of(edge)?))).collect();
         for &(edge, need_m) in &needs {
@@ -186,7 +186,7 @@ impl Opener {
             }
         }
         let narrow = if narrow.is_empty() { narrow } else { self.still_unsafe(edges, supposed) };
-        Ok(if narrow.is_empty() { Ok(()) } else { Err(Hopeless(narrow.into_iter().map(EdgeNo::get).collect())) })
+        Ok(if narrow.is_empty() { Ok(()) } else { Err(HopelessItems(narrow.into_iter().map(EdgeNo::get).collect())) })
     }
 
     /// Supposes a width of an edge. A carriageway has one width for both directions.
@@ -241,7 +241,7 @@ impl Opener {
         turns: &[Item],
         supposed: &mut Suppositions,
         stop: &Stop,
-    ) -> Result<Result<(), Hopeless>, Stopped> {
+    ) -> Result<Result<(), HopelessItems>, Stopped> {
         // What turns need beside edges that are widened is not kept: it depends on these widths.
         let keep = *supposed == self.chosen;
         let unknown: Vec<Item> = turns.iter().copied().filter(|turn| !keep || !self.needs.contains_key(turn)).collect();
@@ -271,7 +271,7 @@ impl Opener {
         }
         let hopeless: Vec<Item> = all.iter().filter(|(_, need)| need.is_none()).map(|(item, _)| *item).collect();
         if !hopeless.is_empty() {
-            return Ok(Err(Hopeless(hopeless)));
+            return Ok(Err(HopelessItems(hopeless)));
         }
         all.iter().filter_map(|(_, need)| need.as_ref()).for_each(|need| supposed.add(need));
         Ok(Ok(()))
@@ -381,7 +381,7 @@ impl Opener {
         let mut network = self.network.clone();
         supposed.apply(&mut network);
         let (edges, nodes) = network.site.differences(&self.network.site);
-        let touched = Touched::find(&network, &self.turns, &edges, &nodes);
+        let touched = Dependents::find(&network, &self.turns, &edges, &nodes);
         let models = std::slice::from_ref(&self.driver.model);
         let mut permits = before.clone();
         let job = Job { network: &network, models, settings: &self.settings };

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::joints::Joints;
-use super::{Opens, Step, Survey};
+use super::{Opens, Survey, SurveyStep};
 use crate::conditions::{Condition, ConditionAt};
 use crate::evidence::Quantity;
 use crate::network::EdgeNo;
@@ -15,7 +15,7 @@ use crate::stop::Stop;
 
 /// Two places, from one to the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct PlacePair {
     /// Where the route begins.
     pub from: Position,
     /// Where it ends.
@@ -26,7 +26,7 @@ pub struct Pair {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pairs {
     /// The pairs.
-    pub all: Vec<Pair>,
+    pub all: Vec<PlacePair>,
     /// The greatest distance from each place to a road, metres.
     pub snap_m: f64,
     /// How many ways of a pair may fail before it is given up.
@@ -74,11 +74,11 @@ pub fn survey_pairs(
     reporter.end();
     let roads = std::sync::Arc::clone(planner.roads());
     let joints = Joints::of(&roads, &planner.driver().model.vehicle);
-    let made = |conditions| Step::new(&roads, &joints, conditions, 0.0, 0.0);
+    let made = |conditions| SurveyStep::new(&roads, &joints, conditions, 0.0, 0.0);
     let mut reachable = survey.before;
     for (completes, step) in ranked(&wanted, limit, &made, stop)? {
         reachable += completes as f64;
-        survey.steps.push(Step { opens: completes as f64, reachable, ..step });
+        survey.steps.push(SurveyStep { opens: completes as f64, reachable, ..step });
     }
     Ok(survey)
 }
@@ -87,9 +87,9 @@ pub fn survey_pairs(
 fn ranked(
     wanted: &[Vec<Condition>],
     limit: usize,
-    made: &dyn Fn(Vec<Condition>) -> Step,
+    made: &dyn Fn(Vec<Condition>) -> SurveyStep,
     stop: &Stop,
-) -> Result<Vec<(usize, Step)>, crate::stop::Stopped> {
+) -> Result<Vec<(usize, SurveyStep)>, crate::stop::Stopped> {
     let mut needed: BTreeMap<Measurand, f64> = BTreeMap::new();
     for condition in wanted.iter().flatten() {
         for measurand in measurands(condition) {
@@ -182,7 +182,7 @@ impl Left {
 /// The conditions of a pair's route; none if it is certified. `None` if there is no route even under conditions.
 fn conditions(
     planner: &mut Planner,
-    pair: &Pair,
+    pair: &PlacePair,
     pairs: &Pairs,
     stop: &Stop,
 ) -> Result<Option<Vec<Condition>>, crate::stop::Stopped> {
@@ -257,8 +257,8 @@ mod tests {
         Condition { quantity: Quantity::CarriagewayWidth, at, assumed_m: None, needed_m }
     }
 
-    fn made(conditions: Vec<Condition>) -> Step {
-        Step { places: conditions.into_iter().map(|one| vec![one]).collect(), opens: 0.0, reachable: 0.0 }
+    fn made(conditions: Vec<Condition>) -> SurveyStep {
+        SurveyStep { places: conditions.into_iter().map(|one| vec![one]).collect(), opens: 0.0, reachable: 0.0 }
     }
 
     /// Each pair overlaps the next ones: 10^10 comparisons of pairs, and as many copies of what is needed, if each step were looked at anew.
@@ -282,7 +282,7 @@ mod tests {
     }
 
     /// The definition: each step of each pair is tried on all pairs.
-    fn one_by_one(wanted: &[Vec<Condition>], limit: usize) -> Vec<(usize, Step)> {
+    fn one_by_one(wanted: &[Vec<Condition>], limit: usize) -> Vec<(usize, SurveyStep)> {
         let mut needed: BTreeMap<Measurand, f64> = BTreeMap::new();
         for condition in wanted.iter().flatten() {
             for measurand in measurands(condition) {
@@ -304,8 +304,9 @@ mod tests {
                 let completes = (0..wanted.len()).filter(|&k| !done[k] && complete(&wanted[k], &then)).count();
                 (completes, step, then)
             });
-            let worth =
-                |step: &(usize, Step, BTreeMap<Measurand, f64>)| step.0 as f64 / step.1.places.len().max(1) as f64;
+            let worth = |step: &(usize, SurveyStep, BTreeMap<Measurand, f64>)| {
+                step.0 as f64 / step.1.places.len().max(1) as f64
+            };
             let best = best.reduce(|best, next| if worth(&next) > worth(&best) { next } else { best });
             let Some((completes, step, then)) = best else { break };
             needed = then;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::bundles::{Bundle, Field};
+use super::bundles::{Bundle, BundleSearch};
 use super::component::Component;
 use super::joints::{CLOSED, Item, Joints, OPEN};
-use super::opening::{Hopeless, Opened, Opener};
-use super::{Opens, Step, Survey};
+use super::opening::{HopelessItems, Opened, Opener};
+use super::{Opens, Survey, SurveyStep};
 use crate::conditions::Suppositions;
 use crate::driver::Driver;
 use crate::graph::Graph;
@@ -61,7 +61,7 @@ pub fn survey_region(
     for rank in 0..limit {
         let Some((opened, now_m)) = surveyor.best(&mut survey.gave_up, stop)? else { break };
         let conditions = opened.conditions.clone();
-        survey.steps.push(Step::new(roads, &surveyor.joints, conditions, now_m - reachable, now_m));
+        survey.steps.push(SurveyStep::new(roads, &surveyor.joints, conditions, now_m - reachable, now_m));
         reachable = now_m;
         surveyor.choose(opened);
         reporter.advance(rank as u64 + 1);
@@ -127,7 +127,7 @@ impl Surveyor<'_> {
                 match self.opener.open(&self.joints, &bundle.items, &self.permits, stop)? {
                     Ok(supposed) if bundle.score() > score => best = Some((bundle.score(), bundle, supposed)),
                     Ok(_) => {}
-                    Err(Hopeless(items)) => {
+                    Err(HopelessItems(items)) => {
                         failed = true;
                         self.close(items);
                     }
@@ -158,9 +158,9 @@ impl Surveyor<'_> {
         self.closed.extend(items);
     }
 
-    fn field(&self) -> Field<'_> {
+    fn field(&self) -> BundleSearch<'_> {
         let Self { joints, prices, component, lengths_m, by_place, .. } = self;
-        Field { joints, prices, component, lengths_m, by_place }
+        BundleSearch { joints, prices, component, lengths_m, by_place }
     }
 
     /// The bundle without what has turned out to be hopeless, if it still opens as much.

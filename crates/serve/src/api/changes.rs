@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
-use super::super::changes::{Changes, Comparisons, Kept};
-use super::super::older::{Older, common};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
+use super::super::changes::{Comparisons, Kept, SetChanges};
+use super::super::older::{OlderState, common};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::{GEOJSON, SCOPE};
 use crate::rows::Bounds;
 use crate::words::Named;
@@ -18,11 +18,11 @@ const USUAL: u32 = 2000;
 
 /// `/api/changes?vehicle=&policy=&bbox=&limit=`
 pub(in super::super) fn changes(
-    region: &Region,
-    older: Option<&Older>,
+    region: &RegionState,
+    older: Option<&OlderState>,
     comparisons: &Comparisons,
-    ask: &Ask,
-) -> Result<Stored, Problem> {
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     ask.only(&["vehicle", "policy", "bbox", "limit"])?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let vehicle = ask.required("vehicle")?;
@@ -50,11 +50,11 @@ pub(in super::super) fn changes(
         "policy": policy.name(),
         "before": members(older, region),
     });
-    Ok(Stored::new(GEOJSON, collection(head, &made, bbox, limit).into_bytes()))
+    Ok(StoredAnswer::new(GEOJSON, collection(head, &made, bbox, limit).into_bytes()))
 }
 
 /// The features of the box, the longest first, with sums of all changes everywhere.
-fn collection(mut head: Value, made: &Changes, bbox: Option<Bounds>, limit: usize) -> String {
+fn collection(mut head: Value, made: &SetChanges, bbox: Option<Bounds>, limit: usize) -> String {
     let inside = |kept: &&Kept| bbox.is_none_or(|bbox| touch(kept.bounds, bbox));
     let found: Vec<&Kept> = made.kept.iter().filter(inside).collect();
     let complete = made.complete && found.len() <= limit;
@@ -91,7 +91,7 @@ fn touch(own: Bounds, bbox: Bounds) -> bool {
 }
 
 /// The older database, as `/api/region` and this answer tell of it. Null if it cannot be read.
-pub(super) fn members(older: &Older, region: &Region) -> Value {
+pub(super) fn members(older: &OlderState, region: &RegionState) -> Value {
     let Ok(old) = older.region() else { return Value::Null };
     let ingest = old.ingest();
     let sets = common(&old.sets, &region.sets);

@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
 use super::{SCOPE, answered, id};
 use crate::osm::facts::WidthSource;
@@ -15,7 +15,7 @@ use crate::store::{QueryOptions, TurnsOf};
 use crate::words::{Named, verdict_words};
 
 /// `/api/edges/{id}`
-pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn edge(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["vehicle", "policy"])?;
     let edge_id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;

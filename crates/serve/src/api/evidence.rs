@@ -2,31 +2,31 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
-use super::super::options::Options;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
+use super::super::options::ServerOptions;
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::answered;
 use crate::osm::{LonLat, rounded};
 use crate::reporter::Silent;
 use crate::store::Database;
 use crate::words::Named as _;
-use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, Target, Usage};
+use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, MeasurementTarget, Usage};
 use netcert_pipeline::{self as pipeline, EvidenceChange, EvidenceChanged, RunError, SetChanged, VerdictChanges, What};
 
 /// What stands for the name of a file in the register and in what is said.
 const FILE: &str = "page";
 
 /// `GET /api/evidence`
-pub(in super::super) fn list(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn list(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let entries = region.read(Database::register)?.entries;
     Ok(answered(&json!({"measurements": entries.iter().map(members).collect::<Vec<_>>()})))
 }
 
 /// `GET /api/evidence/{no}`
-pub(in super::super) fn one(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn one(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let no = super::id(ask.name("no")?)?;
     let entries = region.read(Database::register)?.entries;
@@ -36,7 +36,11 @@ pub(in super::super) fn one(region: &Region, ask: &Ask) -> Result<Stored, Proble
 }
 
 /// `POST /api/evidence`: adds the measurements of the body, all of them or none. Those whose place is not found are left out.
-pub(in super::super) fn add(options: &Options, ask: &Ask, body: &[u8]) -> Result<Stored, Problem> {
+pub(in super::super) fn add(
+    options: &ServerOptions,
+    ask: &DecodedRequest,
+    body: &[u8],
+) -> Result<StoredAnswer, Problem> {
     ask.only(&["dry_run"])?;
     let dry_run = match ask.parameter("dry_run") {
         None | Some("false") => false,
@@ -48,13 +52,13 @@ pub(in super::super) fn add(options: &Options, ask: &Ask, body: &[u8]) -> Result
 }
 
 /// `DELETE /api/evidence/{no}`
-pub(in super::super) fn remove(options: &Options, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn remove(options: &ServerOptions, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let no = super::id(ask.name("no")?)?;
     change(options, What::Remove([no].into()), false)
 }
 
-fn change(options: &Options, what: What, dry_run: bool) -> Result<Stored, Problem> {
+fn change(options: &ServerOptions, what: What, dry_run: bool) -> Result<StoredAnswer, Problem> {
     let ask = EvidenceChange { db: &options.db, what, dry_run, now: options.now.as_ref() };
     let changed = pipeline::change_evidence(ask, &Silent).map_err(|error| match error {
         RunError::Store(error) => Problem::from(error),
@@ -121,14 +125,14 @@ fn members(entry: &Entry) -> Value {
         }
     };
     let matched = entry.places.iter().map(|&(target, counts)| match target {
-        Target::Edge(id) => json!({"edge_id": id.to_string(), "counts": counts}),
-        Target::Corner { node, edges } => json!({
+        MeasurementTarget::Edge(id) => json!({"edge_id": id.to_string(), "counts": counts}),
+        MeasurementTarget::Corner { node, edges } => json!({
             "junction": node.to_string(),
             "from_edge": edges.map(|edges| edges[0].to_string()),
             "to_edge": edges.map(|edges| edges[1].to_string()),
             "counts": counts,
         }),
-        Target::Area(node) => json!({"surface_of": node.to_string(), "counts": counts}),
+        MeasurementTarget::Area(node) => json!({"surface_of": node.to_string(), "counts": counts}),
     });
     json!({
         "no": entry.no,

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
 use super::super::memo::Recent;
 use super::super::problem::Problem;
-use super::super::region::{Certified, Region};
+use super::super::region::{CertifiedVehicle, RegionState};
 use super::super::roads::RoadIndex;
 use super::{GEOJSON, SVG, answered, id, relative, suppose};
 use crate::explain::{self, Explanation, MapError};
@@ -45,14 +45,18 @@ impl Default for Explanations {
 
 impl Explanations {
     /// The explanation of an edge or turn. The first call makes it.
-    fn of(&self, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Arc<Explained>, Problem> {
+    fn of(&self, id: i64, certified: &CertifiedVehicle<'_>, stop: &Stop) -> Result<Arc<Explained>, Problem> {
         let key = format!("{id} {} {}", certified.vehicle.id, certified.set.policy.name());
         self.0.get(&key, || make(certified.region, id, certified, stop))
     }
 }
 
 /// `/api/explain/{id}`
-pub(in super::super) fn explain(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn explain(
+    region: &RegionState,
+    explanations: &Explanations,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     let (explained, id, certified) = explained(region, explanations, ask, &["vehicle", "policy", "relative_to"])?;
     let Some(reference) = ask.parameter("relative_to") else { return Ok(answered(&explained.members)) };
     let mut members = explained.members.clone();
@@ -61,28 +65,36 @@ pub(in super::super) fn explain(region: &Region, explanations: &Explanations, as
 }
 
 /// `/api/explain/{id}/picture.svg`
-pub(in super::super) fn drawn(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn drawn(
+    region: &RegionState,
+    explanations: &Explanations,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     let (explained, ..) = explained(region, explanations, ask, &["vehicle", "policy"])?;
     let Some(svg) = &explained.picture else {
         let headline = explained.members["headline"].as_str().unwrap_or_default();
         return Err(Problem::not_found(format!("there is nothing to draw: {headline}")));
     };
-    Ok(Stored::new(SVG, svg.clone().into_bytes()))
+    Ok(StoredAnswer::new(SVG, svg.clone().into_bytes()))
 }
 
 /// `/api/explain/{id}/map.geojson`
-pub(in super::super) fn mapped(region: &Region, explanations: &Explanations, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn mapped(
+    region: &RegionState,
+    explanations: &Explanations,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     let (explained, ..) = explained(region, explanations, ask, &["vehicle", "policy"])?;
-    Ok(Stored::new(GEOJSON, explained.map.to_string().into_bytes()))
+    Ok(StoredAnswer::new(GEOJSON, explained.map.to_string().into_bytes()))
 }
 
 /// The explanation, with the id and the set that it is of. `known` are the parameters that may be given.
 fn explained<'r>(
-    region: &'r Region,
+    region: &'r RegionState,
     explanations: &Explanations,
-    ask: &Ask,
+    ask: &DecodedRequest,
     known: &[&str],
-) -> Result<(Arc<Explained>, i64, Certified<'r>), Problem> {
+) -> Result<(Arc<Explained>, i64, CertifiedVehicle<'r>), Problem> {
     ask.only(known)?;
     let id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
@@ -90,7 +102,7 @@ fn explained<'r>(
     Ok((explanations.of(id, &certified, &ask.stop)?, id, certified))
 }
 
-fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Explained, Problem> {
+fn make(region: &RegionState, id: i64, certified: &CertifiedVehicle<'_>, stop: &Stop) -> Result<Explained, Problem> {
     let settings = &certified.settings;
     let roads = region.roads()?;
     let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
@@ -104,7 +116,7 @@ fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Res
 }
 
 fn of_edge(
-    region: &Region,
+    region: &RegionState,
     roads: &RoadIndex,
     edge: EdgeNo,
     model: &Model,
@@ -139,7 +151,7 @@ fn of_edge(
 }
 
 fn of_turn(
-    region: &Region,
+    region: &RegionState,
     roads: &RoadIndex,
     id: i64,
     model: &Model,

@@ -19,8 +19,8 @@ pub(super) mod vehicles;
 
 use serde_json::Value;
 
-use super::answer::Stored;
-use super::ask::{Ask, shortened};
+use super::answer::StoredAnswer;
+use super::ask::{DecodedRequest, shortened};
 use super::problem::Problem;
 
 const JSON: &str = "application/json";
@@ -31,13 +31,13 @@ const GEOJSON: &str = "application/geo+json";
 pub(super) const OPENAPI: &str = include_str!("../openapi.json");
 
 /// `/api/openapi.json`
-pub(super) fn openapi(ask: &Ask) -> Result<Stored, Problem> {
+pub(super) fn openapi(ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
-    Ok(Stored::new(JSON, OPENAPI.as_bytes().to_vec()))
+    Ok(StoredAnswer::new(JSON, OPENAPI.as_bytes().to_vec()))
 }
 
-fn answered(value: &Value) -> Stored {
-    Stored::new(JSON, value.to_string().into_bytes())
+fn answered(value: &Value) -> StoredAnswer {
+    StoredAnswer::new(JSON, value.to_string().into_bytes())
 }
 
 /// Parses the id of an edge or turn.

@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
-use super::super::older::Older;
-use super::super::options::Options;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
+use super::super::older::OlderState;
+use super::super::options::ServerOptions;
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::tiles::{MOST_ZOOM, backdrop};
 use super::{SCOPE, answered, changes};
 use crate::osm::facts::Policy;
@@ -20,12 +20,12 @@ const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License"
 
 /// `/api/region`
 pub(in super::super) fn region(
-    region: &Region,
-    older: Option<&Older>,
+    region: &RegionState,
+    older: Option<&OlderState>,
     state: &str,
-    options: &Options,
-    ask: &Ask,
-) -> Result<Stored, Problem> {
+    options: &ServerOptions,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let focus = region.read(Database::focus)?.or(region.extent);
     let mut members = members(region, older, state, options, focus);
@@ -33,7 +33,13 @@ pub(in super::super) fn region(
     Ok(answered(&members))
 }
 
-fn members(region: &Region, older: Option<&Older>, state: &str, options: &Options, focus: Option<Bounds>) -> Value {
+fn members(
+    region: &RegionState,
+    older: Option<&OlderState>,
+    state: &str,
+    options: &ServerOptions,
+    focus: Option<Bounds>,
+) -> Value {
     let ingest = region.ingest();
     let policies: Vec<&str> = Policy::ALL
         .iter()

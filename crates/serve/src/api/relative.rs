@@ -3,13 +3,13 @@
 use serde_json::{Value, json};
 
 use super::super::problem::Problem;
-use super::super::region::{Certified, Region};
+use super::super::region::{CertifiedVehicle, RegionState};
 use crate::osm::facts::Policy;
-use crate::rows::{Relative, Standing};
+use crate::rows::{CertificateStanding, Relative};
 use crate::store::{QueryOptions, TurnQuery};
 
 /// The member `relative` of an explanation.
-pub(super) fn of(region: &Region, id: i64, own: &Certified<'_>, reference: &str) -> Result<Value, Problem> {
+pub(super) fn of(region: &RegionState, id: i64, own: &CertifiedVehicle<'_>, reference: &str) -> Result<Value, Problem> {
     let policy = own.settings.policy;
     let other = region.certified(reference, policy)?;
     if own.settings != other.settings {
@@ -34,15 +34,20 @@ pub(super) fn of(region: &Region, id: i64, own: &Certified<'_>, reference: &str)
 }
 
 /// How an edge or turn stands for a vehicle. `None` if it is not certified.
-fn standing(region: &Region, id: i64, vehicle: &str, policy: Policy) -> Result<Option<Standing>, Problem> {
+fn standing(
+    region: &RegionState,
+    id: i64,
+    vehicle: &str,
+    policy: Policy,
+) -> Result<Option<CertificateStanding>, Problem> {
     let options = QueryOptions { edge_id: Some(id), ..QueryOptions::new(vehicle, policy) };
     let edge = region.read(|database| database.query(&options)?.next().transpose())?;
     if let Some(edge) = edge {
-        return Ok(Some(Standing::of(&edge.certificate)));
+        return Ok(Some(CertificateStanding::of(&edge.certificate)));
     }
     let query = TurnQuery { turn_id: Some(id), ..TurnQuery::new(vehicle, policy) };
     let turns = region.read(|database| {
         if database.has_turns(vehicle, policy)? { database.query_turns(&query) } else { Ok(Vec::new()) }
     })?;
-    Ok(turns.first().map(|turn| Standing::of(&turn.certificate).in_area()))
+    Ok(turns.first().map(|turn| CertificateStanding::of(&turn.certificate).in_area()))
 }

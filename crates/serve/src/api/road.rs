@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
 use super::super::search::{WholeRoad, edges_of};
 use super::summary::Numbers;
@@ -28,7 +28,7 @@ pub(super) struct Told {
 }
 
 /// `/api/road?way=`
-pub(in super::super) fn road(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn road(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["way", "ref", "vehicle", "policy"])?;
     let way_id = id(ask.required("way")?)?;
     let roads = region.roads()?;
@@ -56,7 +56,7 @@ pub(in super::super) fn road(region: &Region, ask: &Ask) -> Result<Stored, Probl
             (edges, told)
         }
     };
-    Ok(Stored::new(GEOJSON, members(&roads, &edges, &told, numbers.as_ref()).to_string().into_bytes()))
+    Ok(StoredAnswer::new(GEOJSON, members(&roads, &edges, &told, numbers.as_ref()).to_string().into_bytes()))
 }
 
 fn members(roads: &RoadIndex, edges: &[EdgeNo], told: &Told, numbers: Option<&Numbers>) -> Value {

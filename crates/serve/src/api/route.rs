@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
-use super::super::planning::{Planned, Planners, Ride, Router, Sheets};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
+use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router, Sheets};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::{GEOJSON, SCOPE, answered};
 use crate::picture;
 use crate::route::{Measure, Question};
@@ -26,12 +26,20 @@ const PARAMETERS: [&str; 11] =
     ["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive", "conditions"];
 
 /// `/api/route`
-pub(in super::super) fn route(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn route(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     Ok(answered(&planned(region, planners, ask, &[])?.members))
 }
 
 /// `/api/sheet.html`
-pub(in super::super) fn sheet_html(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_html(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     let html: fn(&Sheets) -> &String = match ask.parameter("units").unwrap_or("metres") {
         "metres" => |sheets| &sheets.html,
         "feet" => |sheets| &sheets.html_in_feet,
@@ -41,40 +49,53 @@ pub(in super::super) fn sheet_html(region: &Region, planners: &Planners, ask: &A
 }
 
 /// `/api/sheet.csv`
-pub(in super::super) fn sheet_csv(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_csv(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     sheet(region, planners, ask, &[], "text/csv; charset=utf-8", |sheets| &sheets.csv)
 }
 
 /// `/api/sheet.geojson`
-pub(in super::super) fn sheet_geojson(region: &Region, planners: &Planners, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_geojson(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
     sheet(region, planners, ask, &[], GEOJSON, |sheets| &sheets.geojson)
 }
 
 /// `/api/sheet.css`
-pub(in super::super) fn sheet_css(ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn sheet_css(ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
-    Ok(Stored::new("text/css; charset=utf-8", picture::SHEET_STYLE.as_bytes().to_vec()))
+    Ok(StoredAnswer::new("text/css; charset=utf-8", picture::SHEET_STYLE.as_bytes().to_vec()))
 }
 
 /// A sheet. `more` are parameters beside those of a route.
 fn sheet(
-    region: &Region,
+    region: &RegionState,
     planners: &Planners,
-    ask: &Ask,
+    ask: &DecodedRequest,
     more: &[&str],
     kind: &'static str,
     form: fn(&Sheets) -> &String,
-) -> Result<Stored, Problem> {
+) -> Result<StoredAnswer, Problem> {
     let planned = planned(region, planners, ask, more)?;
     let Some(sheets) = &planned.sheets else {
         let detail = "there is no route under conditions between these places, so there is nothing to check; /api/route has the answer";
         return Err(Problem::not_found(detail));
     };
-    Ok(Stored::new(kind, form(sheets).clone().into_bytes()))
+    Ok(StoredAnswer::new(kind, form(sheets).clone().into_bytes()))
 }
 
 /// The answer to a question. The last ones are kept.
-fn planned(region: &Region, planners: &Planners, ask: &Ask, more: &[&str]) -> Result<Arc<Planned>, Problem> {
+fn planned(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+    more: &[&str],
+) -> Result<Arc<PlannedAnswer>, Problem> {
     ask.only(&[&PARAMETERS, more].concat())?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
@@ -109,7 +130,7 @@ fn planned(region: &Region, planners: &Planners, ask: &Ask, more: &[&str]) -> Re
     })
 }
 
-fn ride(ask: &Ask) -> Result<Ride, Problem> {
+fn ride(ask: &DecodedRequest) -> Result<RouteQuestion, Problem> {
     let one = |name: &str| -> Result<_, Problem> {
         ask.required(name)?;
         ask.places(name)?.into_iter().next().ok_or_else(|| Problem::parameter(name, "is missing"))
@@ -134,5 +155,5 @@ fn ride(ask: &Ask) -> Result<Ride, Problem> {
     let snap_m = ask.number("snap", 0.0, 5000.0)?.unwrap_or(SNAP_M);
     let tries = ask.whole("tries", 0..=30)?.unwrap_or(TRIES) as usize;
     let question = Question { places, snap_m, alternatives, tries };
-    Ok(Ride { question, drives, conditions, stop: ask.stop.clone() })
+    Ok(RouteQuestion { question, drives, conditions, stop: ask.stop.clone() })
 }

@@ -4,10 +4,10 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
 use super::super::search::{WholeRoad, coordinates};
 use super::answered;
@@ -25,7 +25,7 @@ const MOST: u32 = 50;
 const NEAR_M: f64 = 2000.0;
 
 /// `/api/search?q=`
-pub(in super::super) fn search(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn search(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["q", "limit", "vehicle", "policy"])?;
     let asked = ask.required("q")?.trim();
     if asked.is_empty() || asked.chars().count() > LONGEST {

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::{SCOPE, answered};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::rows::{RscBin, Stats, StatsRow, TurnCount};
@@ -16,7 +16,7 @@ use crate::words::{Named, verdict_words};
 const BIN_MM: u32 = 100;
 
 /// `/api/stats`
-pub(in super::super) fn stats(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn stats(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["policy"])?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let stats = region.read_until(&ask.stop, Database::stats)?;

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::ask::{self, Ask};
+use super::super::ask::{self, DecodedRequest};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
 use super::super::tiles::severity;
 use crate::network::EdgeNo;
@@ -18,7 +18,11 @@ pub(super) struct Numbers(std::sync::Arc<Vec<MapNumbers>>);
 impl Numbers {
     /// The numbers of the set that a request names by `vehicle` and `policy`. `None` if it names no vehicle, or if the region has too many
     /// edges to hold their numbers.
-    pub(super) fn asked(region: &Region, roads: &RoadIndex, ask: &Ask) -> Result<Option<Self>, Problem> {
+    pub(super) fn asked(
+        region: &RegionState,
+        roads: &RoadIndex,
+        ask: &DecodedRequest,
+    ) -> Result<Option<Self>, Problem> {
         let policy: Policy = ask.parameter("policy").map_or(Ok(region.policy), ask::policy)?;
         let Some(vehicle) = ask.parameter("vehicle") else { return Ok(None) };
         let certified = region.certified(vehicle, policy)?;

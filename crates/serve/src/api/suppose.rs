@@ -5,10 +5,10 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::{Ask, policy};
+use super::super::answer::StoredAnswer;
+use super::super::ask::{DecodedRequest, policy};
 use super::super::problem::Problem;
-use super::super::region::{Certified, Region};
+use super::super::region::{CertifiedVehicle, RegionState};
 use super::super::roads::RoadIndex;
 use super::{answered, id};
 use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_with_kerb, verdict};
@@ -37,7 +37,7 @@ const SCOPE: &str = "A supposition is no certificate: the numbers hold only if t
                      `netcert evidence add` takes measurements. No permit.";
 
 /// `/api/suppose/{id}?metres=`
-pub(in super::super) fn suppose(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn suppose(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["vehicle", "policy", "metres"])?;
     let id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
@@ -58,15 +58,15 @@ pub(in super::super) fn suppose(region: &Region, ask: &Ask) -> Result<Stored, Pr
     Ok(answered(&members))
 }
 
-fn metres(ask: &Ask, most_m: f64) -> Result<f64, Problem> {
+fn metres(ask: &DecodedRequest, most_m: f64) -> Result<f64, Problem> {
     ask.number("metres", 0.0, most_m)?.ok_or_else(|| Problem::parameter("metres", "is missing"))
 }
 
 /// One vehicle under one policy.
 struct Case<'a> {
-    region: &'a Region,
+    region: &'a RegionState,
     roads: &'a RoadIndex,
-    certified: &'a Certified<'a>,
+    certified: &'a CertifiedVehicle<'a>,
     model: &'a Model,
     stop: &'a Stop,
 }
@@ -182,7 +182,7 @@ fn hundredths(m: f64) -> f64 {
     (m * 100.0).floor() / 100.0
 }
 
-fn turn_row(region: &Region, vehicle: &str, policy: Policy, id: i64) -> Result<Option<TurnRow>, Problem> {
+fn turn_row(region: &RegionState, vehicle: &str, policy: Policy, id: i64) -> Result<Option<TurnRow>, Problem> {
     let query = TurnQuery { turn_id: Some(id), ..TurnQuery::new(vehicle, policy) };
     Ok(region.read(|database| database.query_turns(&query))?.pop())
 }
@@ -225,7 +225,7 @@ fn certified_need_m(network: &Network, edge: EdgeNo, model: &Model, settings: &S
 
 /// What may be supposed of a turn, for a slider. Null if no kerb radius decides there.
 pub(super) fn of_turn(
-    region: &Region,
+    region: &RegionState,
     facts: &TurnFacts,
     certified: SetKey<'_>,
     own: Verdict,

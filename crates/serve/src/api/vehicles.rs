@@ -2,30 +2,30 @@
 
 use serde_json::{Value, json};
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::{SVG, answered};
 use crate::picture;
 use crate::vehicle::{Unit, Vehicle};
 use crate::words::Named;
 
 /// `/api/vehicles`
-pub(in super::super) fn list(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn list(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let vehicles: Vec<Value> = region.vehicles.iter().map(|vehicle| members(region, vehicle)).collect();
     Ok(answered(&json!(vehicles)))
 }
 
 /// `/api/vehicles/{id}/drawing.svg`
-pub(in super::super) fn drawing(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn drawing(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let vehicle = region.vehicle(ask.name("id")?)?;
-    Ok(Stored::new(SVG, picture::vehicle(vehicle).into_bytes()))
+    Ok(StoredAnswer::new(SVG, picture::vehicle(vehicle).into_bytes()))
 }
 
-fn members(region: &Region, vehicle: &Vehicle) -> Value {
+fn members(region: &RegionState, vehicle: &Vehicle) -> Value {
     let policies = region.policies(&vehicle.id);
     let certified: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
     let turns: Vec<&str> = policies.iter().filter(|(_, turns)| *turns).map(|(policy, _)| policy.name()).collect();

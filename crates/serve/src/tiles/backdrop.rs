@@ -10,11 +10,11 @@ use crate::osm::{BackdropShape, LonLat};
 use crate::rows::MapBackdrop;
 use crate::words::Named as _;
 
-use super::super::answer::Stored;
-use super::super::ask::Ask;
+use super::super::answer::StoredAnswer;
+use super::super::ask::DecodedRequest;
 use super::super::problem::Problem;
-use super::super::region::Region;
-use super::encode::{Layer, Value};
+use super::super::region::RegionState;
+use super::encode::{TagValue, TileLayer};
 use super::grid::{EXTENT, TileAddress};
 use super::{KIND, drawn, shape};
 
@@ -37,16 +37,16 @@ fn first_zoom(kind: BackdropKind) -> u8 {
 }
 
 /// `/backdrop/{z}/{x}/{y}.mvt`
-pub(in super::super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+pub(in super::super) fn tile(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let tile = TileAddress::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
     if tile.z > MOST_ZOOM {
         return Err(Problem::not_found(format!("there are tiles of the backdrop of zoom 0 to {MOST_ZOOM}")));
     }
-    Ok(Stored::new(KIND, bytes(region, tile)?))
+    Ok(StoredAnswer::new(KIND, bytes(region, tile)?))
 }
 
-fn bytes(region: &Region, tile: TileAddress) -> Result<Vec<u8>, Problem> {
+fn bytes(region: &RegionState, tile: TileAddress) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     for (name, form) in [("area", BackdropForm::Area), ("line", BackdropForm::Line), ("place", BackdropForm::Place)] {
         let shown = |kind: &&BackdropKind| kind.form() == form && tile.z >= first_zoom(**kind);
@@ -56,7 +56,7 @@ fn bytes(region: &Region, tile: TileAddress) -> Result<Vec<u8>, Problem> {
         }
         let least_deg = if form == BackdropForm::Area { tile.degrees_of(LEAST_UNITS) } else { 0.0 };
         let things = region.read(|database| database.map_backdrop(tile.bounds(), &kinds, least_deg))?;
-        let mut layer = Layer::new(name, EXTENT as u16);
+        let mut layer = TileLayer::new(name, EXTENT as u16);
         for thing in &things {
             add(&mut layer, thing, tile);
         }
@@ -65,9 +65,9 @@ fn bytes(region: &Region, tile: TileAddress) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-fn add(layer: &mut Layer, thing: &MapBackdrop, tile: TileAddress) {
+fn add(layer: &mut TileLayer, thing: &MapBackdrop, tile: TileAddress) {
     let id = u64::try_from(thing.number).ok();
-    let kind = Value::Text(thing.kind.name());
+    let kind = TagValue::Text(thing.kind.name());
     match &thing.shape {
         BackdropShape::Areas(polygons) => {
             let polygons: MultiPolygon = polygons.iter().filter_map(|rings| outline(rings, tile)).collect();

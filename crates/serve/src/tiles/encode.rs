@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 /// A value of a feature's tag.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Value<'v> {
+pub(super) enum TagValue<'v> {
     Text(&'v str),
     Whole(i64),
     Number(f64),
@@ -16,7 +16,7 @@ pub(super) enum Value<'v> {
 }
 
 /// A layer under construction.
-pub(super) struct Layer {
+pub(super) struct TileLayer {
     name: &'static str,
     /// Units per side of the tile.
     extent: u16,
@@ -40,18 +40,18 @@ struct Scratch {
 }
 
 /// The tags of one feature.
-pub(super) struct Tags<'l> {
-    layer: &'l mut Layer,
+pub(super) struct FeatureTags<'l> {
+    layer: &'l mut TileLayer,
 }
 
-impl Tags<'_> {
-    pub(super) fn add(&mut self, key: &'static str, value: Value<'_>) {
+impl FeatureTags<'_> {
+    pub(super) fn add(&mut self, key: &'static str, value: TagValue<'_>) {
         let value = self.layer.value(value);
         self.pair(key, value);
     }
 
     /// Adds a value that no other feature has. The layer does not look for it.
-    pub(super) fn only(&mut self, key: &'static str, value: Value<'_>) {
+    pub(super) fn only(&mut self, key: &'static str, value: TagValue<'_>) {
         let value = self.layer.new_value(value);
         self.pair(key, value);
     }
@@ -65,26 +65,26 @@ impl Tags<'_> {
     /// Adds a text, if there is one.
     pub(super) fn text(&mut self, key: &'static str, value: Option<&str>) {
         if let Some(text) = value {
-            self.add(key, Value::Text(text));
+            self.add(key, TagValue::Text(text));
         }
     }
 
     /// Adds a truth value, if there is one.
     pub(super) fn truth(&mut self, key: &'static str, value: Option<bool>) {
         if let Some(truth) = value {
-            self.add(key, Value::Truth(truth));
+            self.add(key, TagValue::Truth(truth));
         }
     }
 
     /// Adds a number, if there is one.
     pub(super) fn number(&mut self, key: &'static str, value: Option<f64>) {
         if let Some(number) = value {
-            self.add(key, Value::Number(number));
+            self.add(key, TagValue::Number(number));
         }
     }
 }
 
-impl Layer {
+impl TileLayer {
     pub(super) fn new(name: &'static str, extent: u16) -> Self {
         Self {
             name,
@@ -99,28 +99,39 @@ impl Layer {
     }
 
     /// Adds a feature of lines. Adds nothing if `lines` is empty.
-    pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
+    pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut FeatureTags<'_>)) {
         if !lines.is_empty() {
             self.any(id, GeometryType::LineString, lines, tag);
         }
     }
 
     /// Adds a feature of one point.
-    pub(super) fn point(&mut self, id: Option<u64>, point: [i32; 2], tag: impl FnOnce(&mut Tags<'_>)) {
+    pub(super) fn point(&mut self, id: Option<u64>, point: [i32; 2], tag: impl FnOnce(&mut FeatureTags<'_>)) {
         self.any(id, GeometryType::Point, &[vec![point]], tag);
     }
 
     /// Adds a feature of polygons, given as open rings: outer rings run clockwise on the screen, holes counter-clockwise and after
     /// their outer ring. Adds nothing if `rings` is empty.
-    pub(super) fn polygons(&mut self, id: Option<u64>, rings: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
+    pub(super) fn polygons(
+        &mut self,
+        id: Option<u64>,
+        rings: &[Vec<[i32; 2]>],
+        tag: impl FnOnce(&mut FeatureTags<'_>),
+    ) {
         if !rings.is_empty() {
             self.any(id, GeometryType::Polygon, rings, tag);
         }
     }
 
-    fn any(&mut self, id: Option<u64>, kind: GeometryType, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
+    fn any(
+        &mut self,
+        id: Option<u64>,
+        kind: GeometryType,
+        lines: &[Vec<[i32; 2]>],
+        tag: impl FnOnce(&mut FeatureTags<'_>),
+    ) {
         self.scratch.pairs.clear();
-        tag(&mut Tags { layer: self });
+        tag(&mut FeatureTags { layer: self });
         let Scratch { pairs, geometry: shape, feature, .. } = &mut self.scratch;
         feature.clear();
         if let Some(id) = id {
@@ -164,7 +175,7 @@ impl Layer {
     }
 
     /// The place of a value, which is added if it is new.
-    fn value(&mut self, value: Value<'_>) -> u32 {
+    fn value(&mut self, value: TagValue<'_>) -> u32 {
         self.scratch.value.clear();
         message(&mut self.scratch.value, value);
         if let Some(&place) = self.places.get(&self.scratch.value) {
@@ -176,7 +187,7 @@ impl Layer {
     }
 
     /// Adds a value.
-    fn new_value(&mut self, value: Value<'_>) -> u32 {
+    fn new_value(&mut self, value: TagValue<'_>) -> u32 {
         self.scratch.value.clear();
         message(&mut self.scratch.value, value);
         self.add_value()
@@ -189,18 +200,18 @@ impl Layer {
     }
 }
 
-fn message(out: &mut Vec<u8>, value: Value<'_>) {
+fn message(out: &mut Vec<u8>, value: TagValue<'_>) {
     match value {
-        Value::Text(text) => bytes(out, 1, text.as_bytes()), // string_value
-        Value::Number(number) => {
+        TagValue::Text(text) => bytes(out, 1, text.as_bytes()), // string_value
+        TagValue::Number(number) => {
             varint(out, field(3, FIXED_64)); // double_value
             out.extend(number.to_le_bytes());
         }
-        Value::Whole(whole) => {
+        TagValue::Whole(whole) => {
             varint(out, field(6, VARINT)); // sint_value
             varint(out, zigzag(whole));
         }
-        Value::Truth(truth) => {
+        TagValue::Truth(truth) => {
             varint(out, field(7, VARINT)); // bool_value
             varint(out, truth.into());
         }
@@ -307,13 +318,13 @@ mod tests {
 
     #[test]
     fn a_reader_of_others_reads_what_was_written() {
-        let mut layer = Layer::new("edge", 4096);
+        let mut layer = TileLayer::new("edge", 4096);
         for id in [7_u64, 1 << 40] {
             layer.feature(Some(id), &[vec![[-64, 0], [4160, 4096]]], |tags| {
-                tags.only("edge_id", Value::Text(&id.to_string()));
-                tags.add("name", Value::Text("Großer Weg"));
+                tags.only("edge_id", TagValue::Text(&id.to_string()));
+                tags.add("name", TagValue::Text("Großer Weg"));
                 tags.number("rsc_m", Some(-0.125));
-                tags.add("way", Value::Whole(-5_000_000_000));
+                tags.add("way", TagValue::Whole(-5_000_000_000));
                 tags.number("nothing", None);
             });
         }

@@ -32,11 +32,11 @@ use std::sync::Arc;
 use geo::{Coord, Polygon};
 use rayon::prelude::*;
 
-use super::answer::Stored;
-use super::ask::{self, Ask};
+use super::answer::StoredAnswer;
+use super::ask::{self, DecodedRequest};
 use super::memo::Recent;
 use super::problem::Problem;
-use super::region::Region;
+use super::region::RegionState;
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
 use crate::rows::{MapEdge, MapNumbers, MapTurn, SetKey};
@@ -44,7 +44,7 @@ use crate::stop::Stop;
 use crate::store::TurnsOf;
 use crate::words::{Named, verdict_words};
 use classes::{FIRST_WITH_TURNS, classes};
-use encode::{Layer, Value};
+use encode::{TagValue, TileLayer};
 pub(super) use grid::MOST_ZOOM;
 use grid::{EXTENT, TileAddress};
 use labels::{FIRST_WITH_LABELS, Label, labels};
@@ -61,15 +61,15 @@ const MOST_OVERVIEWS: usize = 6;
 const FIRST_IN_FULL: u8 = 13;
 
 /// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
-pub(super) fn tile(region: &Region, overviews: &Overviews, ask: &Ask) -> Result<Stored, Problem> {
+pub(super) fn tile(region: &RegionState, overviews: &Overviews, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
     let policy = ask::policy(ask.name("policy")?)?;
     let vehicle = region.certified(ask.name("vehicle")?, policy)?.vehicle;
     let tile = TileAddress::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
-    Ok(Stored::new(KIND, bytes(region, overviews, SetKey { vehicle: &vehicle.id, policy }, tile)?))
+    Ok(StoredAnswer::new(KIND, bytes(region, overviews, SetKey { vehicle: &vehicle.id, policy }, tile)?))
 }
 
-fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddress) -> Result<Vec<u8>, Problem> {
+fn bytes(region: &RegionState, overviews: &Overviews, set: SetKey<'_>, tile: TileAddress) -> Result<Vec<u8>, Problem> {
     if tile.z <= overview::LAST_ZOOM {
         let mut bytes = Vec::new();
         overviews.of(region, set)?.layer(tile).finish(&mut bytes);
@@ -78,7 +78,7 @@ fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddr
     let bounds = tile.bounds();
     let roads = region.roads_for_tiles()?;
     let edges = near::edges(region, roads.as_deref(), set, bounds, classes(tile.z))?;
-    let mut layer = Layer::new("edge", EXTENT as u16);
+    let mut layer = TileLayer::new("edge", EXTENT as u16);
     let sides = region.sides()?;
     let lines = edges.par_iter().with_min_len(near::LEAST_IN_PARALLEL).map(|row| drawn(&row.line, tile));
     for (row, lines) in edges.iter().zip(lines.collect::<Vec<_>>()) {
@@ -87,25 +87,25 @@ fn bytes(region: &Region, overviews: &Overviews, set: SetKey<'_>, tile: TileAddr
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
     if tile.z >= FIRST_WITH_LABELS {
-        let mut layer = Layer::new("label", EXTENT as u16);
+        let mut layer = TileLayer::new("label", EXTENT as u16);
         for Label { edge, line } in labels(&edges, tile.z) {
             layer.feature(Some(u64::from(edge.edge.index) + 1), &drawn(&line, tile), |tags| {
                 tags.text("name", edge.road.name.as_deref());
                 tags.text("ref", edge.road.reference.as_deref());
-                tags.add("highway", Value::Text(&edge.road.highway));
+                tags.add("highway", TagValue::Text(&edge.road.highway));
             });
         }
         layer.finish(&mut bytes);
     }
     if tile.z >= FIRST_WITH_TURNS {
         let turns = region.read(|database| database.map_turns(set, TurnsOf::Box(bounds)))?;
-        let mut layer = Layer::new("turn", EXTENT as u16);
+        let mut layer = TileLayer::new("turn", EXTENT as u16);
         for row in &turns {
             turn(&mut layer, row, tile);
         }
         layer.finish(&mut bytes);
         let junctions = region.read(|database| database.map_junctions(bounds))?;
-        let mut layer = Layer::new("junction", EXTENT as u16);
+        let mut layer = TileLayer::new("junction", EXTENT as u16);
         for (node, polygons) in &junctions {
             layer.polygons(u64::try_from(node.get()).ok(), &drawn_polygons(polygons, tile), |_| {});
         }
@@ -125,7 +125,7 @@ impl Default for Overviews {
 
 impl Overviews {
     /// Makes the overviews in advance, for the first [`MOST_OVERVIEWS`] sets of certificates.
-    pub(super) fn prepare(&self, region: &Region, stop: &Stop) -> Result<(), Problem> {
+    pub(super) fn prepare(&self, region: &RegionState, stop: &Stop) -> Result<(), Problem> {
         for set in region.sets.iter().take(MOST_OVERVIEWS) {
             stop.check()?;
             self.of(region, SetKey { vehicle: &set.vehicle_id, policy: set.policy })?;
@@ -134,7 +134,7 @@ impl Overviews {
     }
 
     /// The overview of a set, from which tiles of low zooms are made. The first call makes it.
-    fn of(&self, region: &Region, set: SetKey<'_>) -> Result<Arc<Overview>, Problem> {
+    fn of(&self, region: &RegionState, set: SetKey<'_>) -> Result<Arc<Overview>, Problem> {
         let key = format!("{} {}", set.vehicle, set.policy.name());
         self.0.get(&key, || {
             let rows = region.read(|database| database.main_roads(set, classes(overview::LAST_ZOOM)))?;
@@ -158,17 +158,17 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], tile: TileAddress) -> Vec<Vec<[
     shape::drawn_polygons(&polygons.iter().filter_map(polygon).collect())
 }
 
-fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
+fn edge(layer: &mut TileLayer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
     let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m, shared } = row.numbers;
     let (verdict, reason) = verdict_words(verdict);
     layer.feature(Some(u64::from(row.edge.index) + 1), lines, |tags| {
-        tags.only("edge_id", Value::Text(&row.edge.id.to_string()));
+        tags.only("edge_id", TagValue::Text(&row.edge.id.to_string()));
         tags.text("name", row.road.name.as_deref());
         tags.text("ref", row.road.reference.as_deref());
-        tags.add("highway", Value::Text(&row.road.highway));
-        tags.add("direction", Value::Text(row.edge.direction.name()));
-        tags.add("oneway", Value::Text(row.oneway.name()));
-        tags.add("verdict", Value::Text(verdict));
+        tags.add("highway", TagValue::Text(&row.road.highway));
+        tags.add("direction", TagValue::Text(row.edge.direction.name()));
+        tags.add("oneway", TagValue::Text(row.oneway.name()));
+        tags.add("verdict", TagValue::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
         // Whole centimetres are as much as the page shows, and many edges share them.
         let rsc_mm = rsc_mm.map(|mm| if z < FIRST_IN_FULL { mm.div_euclid(10) * 10 } else { mm });
@@ -177,7 +177,7 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
         tags.truth("shared", shared.then_some(true));
         tags.text("width_source", width_source.map(WidthSource::name));
         if z >= FIRST_IN_FULL {
-            tags.add("way_id", Value::Whole(row.edge.way_id));
+            tags.add("way_id", TagValue::Whole(row.edge.way_id));
             tags.number("width_m", width_m.map(centimetre));
             tags.number("need_width_m", need_width_m);
             tags.number("length_m", Some(centimetre(length_m)));
@@ -185,16 +185,16 @@ fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Opt
     });
 }
 
-fn turn(layer: &mut Layer, row: &MapTurn, tile: TileAddress) {
+fn turn(layer: &mut TileLayer, row: &MapTurn, tile: TileAddress) {
     let lines = drawn(&row.line, tile);
     let (verdict, reason) = verdict_words(row.verdict);
     layer.feature(Some(u64::from(row.turn.index) + 1), &lines, |tags| {
-        tags.only("turn_id", Value::Text(&row.turn.id.to_string()));
-        tags.add("from_edge", Value::Text(&row.turn.from_edge.to_string()));
-        tags.add("to_edge", Value::Text(&row.turn.to_edge.to_string()));
-        tags.add("kind", Value::Text(&row.kind));
+        tags.only("turn_id", TagValue::Text(&row.turn.id.to_string()));
+        tags.add("from_edge", TagValue::Text(&row.turn.from_edge.to_string()));
+        tags.add("to_edge", TagValue::Text(&row.turn.to_edge.to_string()));
+        tags.add("kind", TagValue::Text(&row.kind));
         tags.number("angle_deg", Some(row.angle_deg));
-        tags.add("verdict", Value::Text(verdict));
+        tags.add("verdict", TagValue::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
         tags.number("rsc_m", row.rsc_mm.map(metres));
     });

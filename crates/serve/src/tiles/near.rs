@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
 use crate::network::{EdgeNo, Network};
 use crate::osm::facts::RoadClass;
@@ -16,7 +16,7 @@ pub(super) const LEAST_IN_PARALLEL: usize = 500;
 /// The edges of these classes (with their links) whose own box touches a box, in order of the network. `roads` is the network in memory,
 /// if there is one. The rows borrow its texts.
 pub(super) fn edges<'r>(
-    region: &Region,
+    region: &RegionState,
     roads: Option<&'r RoadIndex>,
     set: SetKey<'_>,
     bounds: Bounds,

@@ -7,9 +7,9 @@
 //! pixel.
 
 use super::classes::{BY_RANK, classes};
-use super::encode::{Layer, Value};
+use super::encode::{TagValue, TileLayer};
 use super::grid::{self, BUFFER, TileAddress};
-use super::raster::{Raster, Said};
+use super::raster::{LineAttributes, Raster};
 use super::shape;
 use crate::osm::facts::WidthSource;
 use crate::osm::facts::highway;
@@ -39,12 +39,12 @@ const LEAST_STEPS: i64 = -5;
 pub(super) struct Overview {
     /// Sorted by class, the most important first.
     roads: Vec<Road>,
-    /// The verdicts with their reasons. `Said::verdict` is an index into them.
+    /// The verdicts with their reasons. `LineAttributes::verdict` is an index into them.
     verdicts: Vec<Verdict>,
 }
 
 struct Road {
-    said: Said,
+    said: LineAttributes,
     /// Least and greatest of each coordinate.
     bounds: [grid::World; 2],
     line: Vec<grid::World>,
@@ -77,7 +77,7 @@ impl Overview {
     }
 
     /// The layer of a tile.
-    pub(super) fn layer(&self, tile: TileAddress) -> Layer {
+    pub(super) fn layer(&self, tile: TileAddress) -> TileLayer {
         let classes = classes(tile.z).len();
         let [west_north, east_south] = tile.world(BUFFER);
         let outside = |road: &Road| {
@@ -94,14 +94,14 @@ impl Overview {
                 raster.add(part.into_iter().map(|point| point.map(|c| (c / COARSER).round() as i32)), road.said);
             }
         }
-        let mut layer = Layer::new("overview", EXTENT as u16);
+        let mut layer = TileLayer::new("overview", EXTENT as u16);
         for (said, lines) in raster.lines() {
             self.add(&mut layer, said, &lines);
         }
         layer
     }
 
-    fn add(&self, layer: &mut Layer, said: Said, lines: &[Vec<[i32; 2]>]) {
+    fn add(&self, layer: &mut TileLayer, said: LineAttributes, lines: &[Vec<[i32; 2]>]) {
         let (rank, link) = class_of(said);
         let (Some(class), Some(&verdict)) = (BY_RANK.get(rank), self.verdicts.get(usize::from(said.verdict))) else {
             return;
@@ -109,8 +109,8 @@ impl Overview {
         let (verdict, reason) = verdict_words(verdict);
         let highway = highway(*class, link);
         layer.feature(None, lines, |tags| {
-            tags.add("highway", Value::Text(&highway));
-            tags.add("verdict", Value::Text(verdict));
+            tags.add("highway", TagValue::Text(&highway));
+            tags.add("verdict", TagValue::Text(verdict));
             tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
             tags.number("rsc_m", steps(said.short).map(|steps| (steps * STEP_MM) as f64 / 1000.0));
             tags.text("width_source", source(said.doubt).map(WidthSource::name));
@@ -134,10 +134,10 @@ pub(in super::super) fn severity(verdict: Verdict) -> u8 {
     }
 }
 
-fn said(row: &MainRoad, rank: usize, verdict: usize) -> Said {
+fn said(row: &MainRoad, rank: usize, verdict: usize) -> LineAttributes {
     let decided = matches!(row.verdict, Verdict::Safe | Verdict::Unsafe(_));
     let steps = row.rsc_mm.filter(|_| decided).map(|mm| mm.div_euclid(STEP_MM).clamp(LEAST_STEPS, MOST_STEPS));
-    Said {
+    LineAttributes {
         class: (2 * rank + usize::from(row.link)) as u8,
         severity: severity(row.verdict),
         short: steps.map_or(UNTOLD, |steps| (MOST_STEPS - steps) as u8),
@@ -148,7 +148,7 @@ fn said(row: &MainRoad, rank: usize, verdict: usize) -> Said {
     }
 }
 
-/// The value of `Said::short` that means there is no margin.
+/// The value of `LineAttributes::short` that means there is no margin.
 const UNTOLD: u8 = u8::MAX;
 
 fn steps(short: u8) -> Option<i64> {
@@ -160,7 +160,7 @@ fn source(doubt: u8) -> Option<WidthSource> {
 }
 
 /// The rank of the class, and whether the road is a ramp.
-fn class_of(said: Said) -> (usize, bool) {
+fn class_of(said: LineAttributes) -> (usize, bool) {
     (usize::from(said.class / 2), said.class % 2 == 1)
 }
 

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::shape::simplified;
 
 /// A point of the raster.
-pub(super) type Cell = [i32; 2];
+pub(super) type RasterPoint = [i32; 2];
 
 /// The greatest distance of a joined line from its segments, steps. Half a step is a quarter of a pixel.
 const TOLERANCE: f64 = 0.5;
@@ -19,7 +19,7 @@ const LEAST_LENGTH: i32 = 2;
 
 /// The attributes of a line. Within a class, the derived order runs from good to bad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Said {
+pub(super) struct LineAttributes {
     /// The class of road. Lines of different classes are never merged, because the page can hide each class.
     pub(super) class: u8,
     /// 0 means certified, any other value means not certified.
@@ -32,7 +32,7 @@ pub(super) struct Said {
     pub(super) doubt: u8,
 }
 
-impl Said {
+impl LineAttributes {
     /// Merges the attributes of two lines of one class: the worse verdict with its margin, and the weaker source of width.
     fn with(self, other: Self) -> Self {
         Self { doubt: self.doubt.max(other.doubt), ..self.max(other) }
@@ -40,18 +40,18 @@ impl Said {
 }
 
 /// A segment between two points of the raster, the lesser first. Two equal points stand for a line shorter than a step.
-type Segment = (Cell, Cell);
+type Segment = (RasterPoint, RasterPoint);
 
 /// The segments of all added lines.
 #[derive(Default)]
 pub(super) struct Raster {
-    segments: Vec<(u8, Segment, Said)>,
+    segments: Vec<(u8, Segment, LineAttributes)>,
 }
 
 impl Raster {
     /// Adds a line, given by its points on the raster.
-    pub(super) fn add(&mut self, line: impl Iterator<Item = Cell>, said: Said) {
-        let mut last: Option<(Cell, bool)> = None;
+    pub(super) fn add(&mut self, line: impl Iterator<Item = RasterPoint>, said: LineAttributes) {
+        let mut last: Option<(RasterPoint, bool)> = None;
         for cell in line {
             match last {
                 Some((before, _)) if before == cell => {}
@@ -68,18 +68,18 @@ impl Raster {
     }
 
     /// The merged lines by their attributes, from good to bad.
-    pub(super) fn lines(mut self) -> BTreeMap<Said, Vec<Vec<Cell>>> {
+    pub(super) fn lines(mut self) -> BTreeMap<LineAttributes, Vec<Vec<RasterPoint>>> {
         self.segments.sort_unstable();
-        let same = |a: &(u8, Segment, Said), b: &(u8, Segment, Said)| (a.0, a.1) == (b.0, b.1);
-        let worst = |group: &[(u8, Segment, Said)]| {
+        let same = |a: &(u8, Segment, LineAttributes), b: &(u8, Segment, LineAttributes)| (a.0, a.1) == (b.0, b.1);
+        let worst = |group: &[(u8, Segment, LineAttributes)]| {
             let (first, others) = group.split_first()?;
             Some((first.1, others.iter().fold(first.2, |said, other| said.with(other.2))))
         };
-        let segments: Vec<(Segment, Said)> = self.segments.chunk_by(same).filter_map(worst).collect();
+        let segments: Vec<(Segment, LineAttributes)> = self.segments.chunk_by(same).filter_map(worst).collect();
         let barred = segments.iter().filter(|(segment, said)| said.severity > 0 && segment.0 != segment.1);
-        let told: BTreeSet<(u8, Cell)> =
+        let told: BTreeSet<(u8, RasterPoint)> =
             barred.flat_map(|(segment, said)| [(said.class, segment.0), (said.class, segment.1)]).collect();
-        let mut kinds: BTreeMap<Said, Vec<Segment>> = BTreeMap::new();
+        let mut kinds: BTreeMap<LineAttributes, Vec<Segment>> = BTreeMap::new();
         for (segment, said) in segments {
             let (a, b) = segment;
             if a != b {
@@ -93,8 +93,8 @@ impl Raster {
 }
 
 /// Joins segments end to end into simplified lines. Where several segments continue a line, the straightest one is taken.
-fn joined(segments: &[Segment]) -> Vec<Vec<Cell>> {
-    let mut at: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
+fn joined(segments: &[Segment]) -> Vec<Vec<RasterPoint>> {
+    let mut at: BTreeMap<RasterPoint, Vec<usize>> = BTreeMap::new();
     for (i, &(a, b)) in segments.iter().enumerate() {
         at.entry(a).or_default().push(i);
         at.entry(b).or_default().push(i);
@@ -119,7 +119,12 @@ fn joined(segments: &[Segment]) -> Vec<Vec<Cell>> {
 }
 
 /// The far end of the unused segment that continues the line most nearly straight. Marks the segment as used. Used ones are taken out of `at`.
-fn onward(line: &[Cell], segments: &[Segment], at: &mut BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
+fn onward(
+    line: &[RasterPoint],
+    segments: &[Segment],
+    at: &mut BTreeMap<RasterPoint, Vec<usize>>,
+    used: &mut [bool],
+) -> Option<RasterPoint> {
     let [.., before, end] = line else { return None };
     let other = |&i: &usize| if segments[i].0 == *end { segments[i].1 } else { segments[i].0 };
     let straight = |i: &usize| {
@@ -133,7 +138,7 @@ fn onward(line: &[Cell], segments: &[Segment], at: &mut BTreeMap<Cell, Vec<usize
     Some(other(&next))
 }
 
-fn step(from: Cell, to: Cell) -> [f64; 2] {
+fn step(from: RasterPoint, to: RasterPoint) -> [f64; 2] {
     [f64::from(to[0] - from[0]), f64::from(to[1] - from[1])]
 }
 
@@ -142,11 +147,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn said(severity: u8, short: u8, doubt: u8) -> Said {
-        Said { class: 0, severity, short, verdict: severity, doubt }
+    fn said(severity: u8, short: u8, doubt: u8) -> LineAttributes {
+        LineAttributes { class: 0, severity, short, verdict: severity, doubt }
     }
 
-    fn lines(all: &[(&[Cell], Said)]) -> BTreeMap<Said, Vec<Vec<Cell>>> {
+    fn lines(all: &[(&[RasterPoint], LineAttributes)]) -> BTreeMap<LineAttributes, Vec<Vec<RasterPoint>>> {
         let mut raster = Raster::default();
         all.iter().for_each(|(line, said)| raster.add(line.iter().copied(), *said));
         raster.lines()
@@ -154,8 +159,8 @@ mod tests {
 
     #[test]
     fn of_two_directions_the_worse_counts_on_the_lesser_evidence() {
-        let there: &[Cell] = &[[0, 0], [10, 0], [10, 9]];
-        let back: &[Cell] = &[[10, 9], [10, 0], [0, 0]];
+        let there: &[RasterPoint] = &[[0, 0], [10, 0], [10, 9]];
+        let back: &[RasterPoint] = &[[10, 9], [10, 0], [0, 0]];
         let drawn = lines(&[(there, said(0, 3, 4)), (back, said(2, 1, 0))]);
         assert_eq!(drawn, BTreeMap::from([(said(2, 1, 4), vec![there.to_vec()])]));
         let drawn = lines(&[(there, said(0, 3, 0)), (back, said(0, 1, 2))]);
@@ -177,9 +182,9 @@ mod tests {
         assert_eq!(beside.into_keys().collect::<Vec<_>>(), [said(1, 0, 0)], "the place is told already");
     }
 
-    fn distance(p: Cell, line: &[Cell]) -> f64 {
+    fn distance(p: RasterPoint, line: &[RasterPoint]) -> f64 {
         let p = p.map(f64::from);
-        let to = |pair: &[Cell]| {
+        let to = |pair: &[RasterPoint]| {
             let (a, b) = (pair[0].map(f64::from), pair[1].map(f64::from));
             let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
             let squared = u[0] * u[0] + u[1] * u[1];
@@ -210,7 +215,7 @@ mod tests {
             }
             let drawn = raster.lines();
             prop_assert_eq!(&drawn, &other.lines());
-            let barred: Vec<&Vec<Cell>> =
+            let barred: Vec<&Vec<RasterPoint>> =
                 drawn.iter().filter(|(said, _)| said.severity > 0).flat_map(|(_, lines)| lines).collect();
             for (line, ..) in all.iter().filter(|(_, severity, _)| *severity > 0) {
                 for &(x, y) in line {

@@ -17,10 +17,10 @@ use crate::columns::read::rows;
 use crate::error::content;
 use crate::file::blob;
 use crate::file::bulk::Bulk;
-use crate::results::turns::{self, Record};
+use crate::results::turns::{self, TurnRecord};
 use crate::roads::junctions;
-use crate::roads::network_rows::{EdgeRow, NetworkRow, RoadRow, StrokeRow, edge_rows, stroke_rows};
-use crate::roads::network_write::{Narrowings, Ranges, Roads, write_edge, write_strokes};
+use crate::roads::network_rows::{MapEdgeRow, NetworkRow, RoadRow, StrokeRow, edge_rows, stroke_rows};
+use crate::roads::network_write::{Narrowings, Ranges, RoadWriter, write_edge, write_strokes};
 use crate::roads::restrictions;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -74,7 +74,7 @@ async fn set_box(c: &mut SqliteConnection, layers: &'static str, around: Option<
 /// An edge whose row differs.
 struct Changed {
     index: EdgeNo,
-    row: EdgeRow,
+    row: MapEdgeRow,
     /// Whether the row has the measures of its corridor. If not, those of the database stand.
     measured: bool,
     road: Rc<RoadRow>,
@@ -117,7 +117,7 @@ impl EdgeChanges {
                 road = Some((Rc::new(row), differs));
             }
             let Some((road, road_differs)) = &road else { return Err(content("an edge has no road")) };
-            let starts = |row: &EdgeRow, ranges: &Ranges| {
+            let starts = |row: &MapEdgeRow, ranges: &Ranges| {
                 [row.road, ranges.shape.start, ranges.narrowings.start, ranges.narrowings.end].map(i64::from)
             };
             let (starts, starts_before) = (starts(&row, &ranges), starts(&row_before, &ranges_before));
@@ -132,7 +132,7 @@ impl EdgeChanges {
             if *road_differs || row != row_before || measure.is_some() {
                 let (measured, road, ranges) = (measure.is_some(), Rc::clone(road), ranges.clone());
                 let measure = measure.map_or_else(EdgeMeasure::default, |(_, measure)| *measure);
-                found.changed.push(Changed { index, row: EdgeRow { measure, ..row }, measured, road, ranges });
+                found.changed.push(Changed { index, row: MapEdgeRow { measure, ..row }, measured, road, ranges });
             }
         }
         match measures.next() {
@@ -197,7 +197,7 @@ async fn write_roads(c: &mut SqliteConnection, after: &Portion) -> Sql<()> {
     for table in ["road", "section", "legal", "narrowing"] {
         sqlx::query(sqlx::AssertSqlSafe(format!("DELETE FROM {table}"))).execute(&mut *c).await?;
     }
-    let (mut roads, mut narrowings, mut ranges) = (Roads::new(), Narrowings::new(), Ranges::default());
+    let (mut roads, mut narrowings, mut ranges) = (RoadWriter::new(), Narrowings::new(), Ranges::default());
     for (_, NetworkRow { road, edge }) in edge_rows(after, &[]) {
         if let Some(road) = road {
             roads.write(c, edge.road, &road).await?;
@@ -229,7 +229,7 @@ async fn strokes(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<()>
 /// Writes the rows of turns that differ. Returns the box around all turns.
 async fn change_turns(c: &mut SqliteConnection, amendment: &Amendment<'_>) -> Sql<Option<Bounds>> {
     let Amendment { before, turns_before, after, turns, .. } = amendment;
-    let record = |portion: &Portion, facts| Record::new(&portion.network, facts, |edge| edge);
+    let record = |portion: &Portion, facts| TurnRecord::new(&portion.network, facts, |edge| edge);
     let mut changed = Vec::new();
     let mut around = None;
     for ((index, now), then) in TurnNo::all().zip(*turns).zip(*turns_before) {

@@ -3,7 +3,7 @@
 
 mod interrupt;
 pub(crate) mod register_state;
-pub(crate) mod streamed;
+pub(crate) mod row_stream;
 
 use std::io::Read as _;
 use std::path::Path;

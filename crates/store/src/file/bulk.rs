@@ -109,7 +109,7 @@ impl Bulk {
     }
 
     /// Adds the next value of the current row.
-    pub(crate) fn add(&mut self, value: impl Column) {
+    pub(crate) fn add(&mut self, value: impl BulkColumn) {
         value.add_to(&mut self.batch);
     }
 
@@ -134,11 +134,11 @@ impl Bulk {
 }
 
 /// What can be a column's value.
-pub(crate) trait Column {
+pub(crate) trait BulkColumn {
     fn add_to(self, batch: &mut Batch);
 }
 
-impl<T: Column> Column for Option<T> {
+impl<T: BulkColumn> BulkColumn for Option<T> {
     fn add_to(self, batch: &mut Batch) {
         match self {
             Some(value) => value.add_to(batch),
@@ -147,13 +147,13 @@ impl<T: Column> Column for Option<T> {
     }
 }
 
-impl Column for f64 {
+impl BulkColumn for f64 {
     fn add_to(self, batch: &mut Batch) {
         batch.values.push(Value::Real(self));
     }
 }
 
-impl Column for i64 {
+impl BulkColumn for i64 {
     fn add_to(self, batch: &mut Batch) {
         batch.values.push(Value::Integer(self));
     }
@@ -161,7 +161,7 @@ impl Column for i64 {
 
 /// Types that become an `i64`.
 macro_rules! integers {
-    ($($integer:ty),*) => { $(impl Column for $integer {
+    ($($integer:ty),*) => { $(impl BulkColumn for $integer {
         fn add_to(self, batch: &mut Batch) {
             i64::from(self).add_to(batch);
         }
@@ -170,26 +170,26 @@ macro_rules! integers {
 
 integers!(bool, u8, u16, u32, i32);
 
-impl Column for NonZeroU8 {
+impl BulkColumn for NonZeroU8 {
     fn add_to(self, batch: &mut Batch) {
         self.get().add_to(batch);
     }
 }
 
-impl Column for &str {
+impl BulkColumn for &str {
     fn add_to(self, batch: &mut Batch) {
         batch.bytes.extend_from_slice(self.as_bytes());
         batch.values.push(Value::Text(batch.bytes.len()));
     }
 }
 
-impl Column for String {
+impl BulkColumn for String {
     fn add_to(self, batch: &mut Batch) {
         self.as_str().add_to(batch);
     }
 }
 
-impl Column for Vec<u8> {
+impl BulkColumn for Vec<u8> {
     fn add_to(self, batch: &mut Batch) {
         batch.bytes.extend_from_slice(&self);
         batch.values.push(Value::Blob(batch.bytes.len()));

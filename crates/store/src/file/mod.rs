@@ -7,4 +7,4 @@ pub(crate) mod companions;
 pub(crate) mod digest;
 pub(crate) mod schema;
 pub(crate) mod session;
-pub(crate) mod unfinished;
+pub(crate) mod unfinished_file;

@@ -40,7 +40,7 @@ pub(crate) async fn touch_tables(c: &mut SqliteConnection, time: &str) -> Sql<()
 }
 
 /// A table or view that is a layer: it has a column `geom`.
-pub(crate) struct Layer<'a> {
+pub(crate) struct LayerTable<'a> {
     /// Name of the table or view, and of the layer.
     pub(crate) table: &'a str,
     /// The type of its geometries, in the words of GeoPackage.
@@ -51,7 +51,7 @@ pub(crate) struct Layer<'a> {
     pub(crate) bounds: Option<Bounds>,
 }
 
-impl Layer<'_> {
+impl LayerTable<'_> {
     /// Registers the layer. `time` is the time of its last change.
     pub(crate) async fn add(&self, c: &mut SqliteConnection, time: &str) -> Sql<()> {
         let Self { table, geometries, description, bounds } = *self;

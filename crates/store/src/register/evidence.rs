@@ -6,7 +6,9 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use crate::network::{Network, Site};
 use crate::osm::NodeId;
 use crate::words::Named;
-use netcert_evidence::{Columns, Counted, Edges, Entry, Quantity, Row, State, Target, Value, parts, surface};
+use netcert_evidence::{
+    Columns, Counted, Edges, Entry, MeasurementRow, MeasurementTarget, Quantity, State, Value, parts, surface,
+};
 use netcert_rows::Bounds;
 
 use crate::columns::read::{rows, word};
@@ -14,7 +16,7 @@ use crate::database::Database;
 use crate::database::register_state::RegisterState;
 use crate::error::{StoreError, content};
 use crate::file::bulk::Bulk;
-use crate::layers::contents::Layer;
+use crate::layers::contents::LayerTable;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -75,7 +77,7 @@ fn entry(row: &SqliteRow) -> Sql<Entry> {
     };
     let (value, place, at) = parts(quantity, &columns).map_err(|why| content(format!("measurement {no}: {why}")))?;
     let sigma: f64 = row.try_get("sigma")?;
-    let measured = Row {
+    let measured = MeasurementRow {
         number: row.try_get::<i64, _>("file_row")?.unsigned_abs(),
         id: optional("id")?,
         quantity,
@@ -100,13 +102,15 @@ fn entry(row: &SqliteRow) -> Sql<Entry> {
 }
 
 /// The place in the columns from `first` on: edge, node, and the edges of a corner; the quantity is two columns after them.
-fn target(row: &SqliteRow, first: usize) -> Sql<Target> {
+fn target(row: &SqliteRow, first: usize) -> Sql<MeasurementTarget> {
     let at = |column: usize| row.try_get::<Option<i64>, _>(first + column);
     let quantity: Quantity = word(row, first + 5)?;
     match (at(0)?, at(1)?, at(2)?.zip(at(3)?)) {
-        (Some(edge), None, None) => Ok(Target::Edge(edge)),
-        (None, Some(node), None) if quantity == Quantity::Surface => Ok(Target::Area(NodeId::new(node))),
-        (None, Some(node), edges) => Ok(Target::Corner { node: NodeId::new(node), edges: edges.map(|(a, b)| [a, b]) }),
+        (Some(edge), None, None) => Ok(MeasurementTarget::Edge(edge)),
+        (None, Some(node), None) if quantity == Quantity::Surface => Ok(MeasurementTarget::Area(NodeId::new(node))),
+        (None, Some(node), edges) => {
+            Ok(MeasurementTarget::Corner { node: NodeId::new(node), edges: edges.map(|(a, b)| [a, b]) })
+        }
         _ => Err(content("a place of a measurement is neither edge nor junction")),
     }
 }
@@ -171,9 +175,9 @@ pub(crate) async fn write(c: &mut SqliteConnection, register: &Register, time: &
         register.entries.iter().flat_map(|entry| entry.places.iter().map(|at| (entry.no, at)))
     {
         let (edge, node, edges) = match target {
-            Target::Edge(id) => (Some(id), None, None),
-            Target::Corner { node, edges } => (None, Some(node), edges),
-            Target::Area(node) => (None, Some(node), None),
+            MeasurementTarget::Edge(id) => (Some(id), None, None),
+            MeasurementTarget::Corner { node, edges } => (None, Some(node), edges),
+            MeasurementTarget::Area(node) => (None, Some(node), None),
         };
         bulk.add(no);
         bulk.add(edge);
@@ -225,7 +229,7 @@ fn add(bulk: &mut Bulk, entry: &Entry) {
 
 /// Registers the measurements as a layer, and their places as a table.
 async fn add_layers(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    let layer = Layer { table: "evidence", geometries: "GEOMETRY", description: "Measurements", bounds };
+    let layer = LayerTable { table: "evidence", geometries: "GEOMETRY", description: "Measurements", bounds };
     layer.add(c, time).await?;
     let sql = "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) \
                VALUES ('evidence_place', 'attributes', 'evidence_place', 'Where measurements belong', ?)";

@@ -22,7 +22,7 @@ const MOST_BLOCK_BYTES: u32 = 1 << 30;
 
 /// What the blocks of a file hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Stage {
+pub enum CheckpointStage {
     /// [`netcert_rows::StrokeMade`]
     Strokes,
     /// [`netcert_rows::TurnMade`]
@@ -30,7 +30,7 @@ pub enum Stage {
 }
 
 /// Of which part of the work a block is: a stage, and the number of a portion of the network.
-pub type PartOfWork = (Stage, u32);
+pub type PartOfWork = (CheckpointStage, u32);
 
 /// The finished work of one run. The run must hold the lock of its unfinished database.
 pub struct Checkpoint {
@@ -212,7 +212,7 @@ mod tests {
 
     type Batches = Vec<Vec<u32>>;
 
-    const STROKES: PartOfWork = (Stage::Strokes, 2);
+    const STROKES: PartOfWork = (CheckpointStage::Strokes, 2);
 
     fn kept(checkpoint: &mut Checkpoint, part: PartOfWork) -> Batches {
         let mut all = Batches::new();
@@ -234,8 +234,8 @@ mod tests {
         let batches: Batches = (0..9).map(|k| (k..300 * k).collect()).collect();
         for batch in &batches {
             checkpoint.keep(STROKES, batch).unwrap();
-            checkpoint.keep((Stage::Turns, 3), &batch[batch.len() / 2..]).unwrap();
-            checkpoint.keep((Stage::Strokes, 7), &[9_u32]).unwrap();
+            checkpoint.keep((CheckpointStage::Turns, 3), &batch[batch.len() / 2..]).unwrap();
+            checkpoint.keep((CheckpointStage::Strokes, 7), &[9_u32]).unwrap();
         }
         drop(checkpoint);
         let whole = std::fs::read(&path).unwrap();
@@ -259,7 +259,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.done");
         let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
-        (0..4).for_each(|k| checkpoint.keep((Stage::Turns, 0), &[k, 5_u32, 6]).unwrap());
+        (0..4).for_each(|k| checkpoint.keep((CheckpointStage::Turns, 0), &[k, 5_u32, 6]).unwrap());
         drop(checkpoint);
         let whole = std::fs::read(&path).unwrap();
         for at in 40..whole.len() {
@@ -267,7 +267,7 @@ mod tests {
             bytes[at] ^= 0x10;
             std::fs::write(&path, bytes).unwrap();
             let mut checkpoint = Checkpoint::open(path.clone(), &[7; 32]).unwrap();
-            let turns = kept(&mut checkpoint, (Stage::Turns, 0));
+            let turns = kept(&mut checkpoint, (CheckpointStage::Turns, 0));
             assert!(turns.len() < 4 && turns.iter().zip(0..).all(|(batch, k)| *batch == [k, 5, 6]));
         }
         std::fs::write(&path, &whole).unwrap();

@@ -4,7 +4,7 @@
 //! nowhere else (`known_vehicles`).
 //!
 //! Two sets compare only if they were made with the same settings. [`Database::reference`] checks that; every reader of a reference
-//! begins there. [`Beside`] takes rows in order of the network and reads the reference's certificates along with them, so memory does
+//! begins there. [`ReferenceCertificates`] takes rows in order of the network and reads the reference's certificates along with them, so memory does
 //! not grow with the network.
 
 use std::collections::BTreeMap;
@@ -18,12 +18,12 @@ use sqlx::sqlite::SqliteRow;
 use crate::osm::facts::Policy;
 use crate::words::Named as _;
 use netcert_rows::settings::Settings;
-use netcert_rows::{Relative, RelativeCount, Standing};
+use netcert_rows::{CertificateStanding, Relative, RelativeCount};
 
 use crate::columns::names::verdict_no;
 use crate::columns::read::verdict;
 use crate::database::Database;
-use crate::database::streamed::Streamed;
+use crate::database::row_stream::RowStream;
 use crate::error::StoreError;
 use crate::register::known_vehicles::KnownVehicle;
 use crate::results::settings::CertifiedSet;
@@ -31,7 +31,7 @@ use crate::results::settings::CertifiedSet;
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// The standing of an edge or turn, with its index in the network.
-pub type IndexedStanding = (u32, Standing);
+pub type IndexedStanding = (u32, CertificateStanding);
 
 /// Instead of a vehicle's id: on each road the vehicles that the register knows to go there.
 pub const DRIVABLE_BY: &str = "drivable_by";
@@ -123,7 +123,7 @@ impl Database {
         &mut self,
         vehicle: &str,
         policy: Policy,
-    ) -> Result<Streamed<'_, IndexedStanding>, StoreError> {
+    ) -> Result<RowStream<'_, IndexedStanding>, StoreError> {
         Ok(self.standings("certificate_compact", vehicle, policy, standing))
     }
 
@@ -135,7 +135,7 @@ impl Database {
         &mut self,
         vehicle: &str,
         policy: Policy,
-    ) -> Result<Streamed<'_, IndexedStanding>, StoreError> {
+    ) -> Result<RowStream<'_, IndexedStanding>, StoreError> {
         let in_area = |row: &SqliteRow| standing(row).map(|(turn, standing)| (turn, standing.in_area()));
         Ok(self.standings("turn_certificate_compact", vehicle, policy, in_area))
     }
@@ -146,7 +146,7 @@ impl Database {
         vehicle: &str,
         policy: Policy,
         read: fn(&SqliteRow) -> Sql<IndexedStanding>,
-    ) -> Streamed<'_, IndexedStanding> {
+    ) -> RowStream<'_, IndexedStanding> {
         let sql = format!(
             "SELECT fid, verdict_no, rsc_mm, hinge_margin_cdeg, shrink_milli FROM {table} \
              WHERE vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND corridor_no = ? ORDER BY fid"
@@ -193,7 +193,10 @@ fn standing(row: &SqliteRow) -> Sql<IndexedStanding> {
         Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
     };
     let verdict = verdict(row, 1, || format!("row {fid}"))?;
-    Ok((fid.saturating_sub(1), Standing::stored(verdict, parts(2, 1000.0)?, parts(3, 100.0)?, parts(4, 1000.0)?)))
+    Ok((
+        fid.saturating_sub(1),
+        CertificateStanding::stored(verdict, parts(2, 1000.0)?, parts(3, 100.0)?, parts(4, 1000.0)?),
+    ))
 }
 
 /// The settings that differ, as `max_shift_m 1.5 and 0.0`.
@@ -262,7 +265,7 @@ impl ReferenceReader {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
+    pub fn edges(&mut self) -> Result<ReferenceCertificates<'_>, StoreError> {
         self.beside(Database::edge_standings, |known| &known.edges)
     }
 
@@ -270,7 +273,7 @@ impl ReferenceReader {
     ///
     /// # Errors
     /// Its turns are not certified ([`StoreError::NotThere`]); the file cannot be read.
-    pub fn turns(&mut self) -> Result<Beside<'_>, StoreError> {
+    pub fn turns(&mut self) -> Result<ReferenceCertificates<'_>, StoreError> {
         if let Some(database) = self.databases.first_mut() {
             self.reference.check_turns(database)?;
         }
@@ -279,9 +282,9 @@ impl ReferenceReader {
 
     fn beside(
         &mut self,
-        standings: impl for<'s> Fn(&'s mut Database, &str, Policy) -> Result<Streamed<'s, IndexedStanding>, StoreError>,
+        standings: impl for<'s> Fn(&'s mut Database, &str, Policy) -> Result<RowStream<'s, IndexedStanding>, StoreError>,
         places: impl Fn(&KnownVehicle) -> &Vec<u32>,
-    ) -> Result<Beside<'_>, StoreError> {
+    ) -> Result<ReferenceCertificates<'_>, StoreError> {
         let mut databases = self.databases.iter_mut();
         let mut vehicles = Vec::new();
         for vehicle in &self.reference.vehicles {
@@ -293,30 +296,30 @@ impl ReferenceReader {
             let places = vehicle.known.as_ref().map(|known| places(known).as_slice());
             vehicles.push(BesideVehicle { rows, ahead: None, places });
         }
-        Ok(Beside { vehicles })
+        Ok(ReferenceCertificates { vehicles })
     }
 }
 
 /// The certificates of a reference, read along with rows of another vehicle.
-pub struct Beside<'d> {
+pub struct ReferenceCertificates<'d> {
     vehicles: Vec<BesideVehicle<'d>>,
 }
 
 struct BesideVehicle<'d> {
     /// `None` if it is the compared vehicle itself.
-    rows: Option<Fuse<Streamed<'d, IndexedStanding>>>,
+    rows: Option<Fuse<RowStream<'d, IndexedStanding>>>,
     ahead: Option<IndexedStanding>,
     /// The sorted indices at which it is compared. `None` means all.
     places: Option<&'d [u32]>,
 }
 
-impl Beside<'_> {
+impl ReferenceCertificates<'_> {
     /// Compares the edge or turn with this index in the network. Calls must be in order of the network; they may leave rows out. Of
     /// several vehicles the one counts beside which the compared vehicle needs the least more room.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn relative(&mut self, index: u32, own: Standing) -> Result<Relative, StoreError> {
+    pub fn relative(&mut self, index: u32, own: CertificateStanding) -> Result<Relative, StoreError> {
         let mut best = Relative::default();
         for vehicle in &mut self.vehicles {
             let relative = vehicle.relative(index, own)?;
@@ -330,7 +333,7 @@ impl Beside<'_> {
 }
 
 impl BesideVehicle<'_> {
-    fn relative(&mut self, index: u32, own: Standing) -> Result<Relative, StoreError> {
+    fn relative(&mut self, index: u32, own: CertificateStanding) -> Result<Relative, StoreError> {
         if self.places.is_some_and(|places| places.binary_search(&index).is_err()) {
             return Ok(Relative::default());
         }

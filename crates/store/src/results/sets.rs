@@ -12,7 +12,7 @@ use netcert_rows::Bounds;
 use crate::columns::names::{SAFE, corridor_no, width_columns};
 use crate::columns::set_no::SetNo;
 use crate::file::bulk::Bulk;
-use crate::layers::contents::Layer;
+use crate::layers::contents::LayerTable;
 use crate::layers::styles::{self, Shows};
 use crate::results::compact::CompactCertificate;
 use crate::results::complete::{Complete, Fault};
@@ -118,7 +118,7 @@ impl Set<'_> {
         sqlx::query(AssertSqlSafe(view)).persistent(false).execute(&mut *c).await?;
         let description = format!("Roads that {} may use ({} policy)", self.vehicle_name, self.policy.name());
         let bounds = network_bounds(c).await?;
-        let listed = Layer { table: layer, geometries: "LINESTRING", description: &description, bounds };
+        let listed = LayerTable { table: layer, geometries: "LINESTRING", description: &description, bounds };
         listed.add(c, self.time).await?;
         styles::add(c, layer, Shows::Permits, self.time).await
     }

@@ -13,7 +13,7 @@ use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 use crate::columns::names::width_columns;
 use crate::columns::read::{edge_of, turn_of, verdict, word_or_none};
 use crate::database::Database;
-use crate::database::streamed::Streamed;
+use crate::database::row_stream::RowStream;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::results::turns::{self, TurnQuery};
@@ -29,7 +29,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
+    pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<RowStream<'_, EdgeStep>, StoreError> {
         let [_, source] = width_columns(policy);
         let sql = format!(
             "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), \
@@ -43,7 +43,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn turn_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnStep>, StoreError> {
+    pub fn turn_steps(&mut self, vehicle: &str, policy: Policy) -> Result<RowStream<'_, TurnStep>, StoreError> {
         let sql = "SELECT c.fid, t.from_fid, t.to_fid, t.first_arc_fid, t.last_arc_fid, t.via_node, t.angle_deg, \
                    c.verdict_no, c.rsc_mm FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
                    WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
@@ -55,7 +55,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn turn_rows(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnRow>, StoreError> {
+    pub fn turn_rows(&mut self, vehicle: &str, policy: Policy) -> Result<RowStream<'_, TurnRow>, StoreError> {
         let sql = turns::statement(&TurnQuery::new(vehicle, policy));
         Ok(self.streamed(sql, vehicle, policy, turns::turn_row))
     }
@@ -78,7 +78,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn straight_on(&mut self) -> Result<Streamed<'_, StraightOn>, StoreError> {
+    pub fn straight_on(&mut self) -> Result<RowStream<'_, StraightOn>, StoreError> {
         let sql = "SELECT a.fid, coalesce(b.fid, CASE WHEN s.closed THEN \
                    (SELECT fid FROM stroke_edge WHERE position = s.edge_start + 1) END) \
                    FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \

@@ -22,7 +22,7 @@ use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
-use crate::layers::contents::Layer;
+use crate::layers::contents::LayerTable;
 use crate::layers::styles::{self, Shows};
 use crate::results::compact::CompactCertificate;
 use crate::results::complete::{Complete, Fault, check_complete};
@@ -70,7 +70,7 @@ impl TurnSet<'_> {
 
 /// A turn with all that its row says: it can be written without the network.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(crate) struct Record {
+pub(crate) struct TurnRecord {
     /// With numbers of edges of the whole network, and no index of a restriction.
     facts: TurnFacts,
     via_node: NodeId,
@@ -81,9 +81,9 @@ pub(crate) struct Record {
 
 /// The place of a turn in the order of the whole network ([`netcert_roads::turns::turn_facts`]): passages last, then by node, by edge before and by
 /// edge after. Passages have no node.
-pub(crate) type TurnKey = (bool, NodeId, EdgeNo, EdgeNo);
+pub(crate) type TurnOrder = (bool, NodeId, EdgeNo, EdgeNo);
 
-impl Record {
+impl TurnRecord {
     /// The record of a turn of a network. `number` returns the number of an edge in the whole network.
     pub(crate) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(EdgeNo) -> EdgeNo) -> Self {
         let via_node = network.edges.get(facts.movement.from.index()).map_or(NodeId::new(0), |edge| edge.to_node);
@@ -96,7 +96,7 @@ impl Record {
         Self { facts: TurnFacts { movement, through, ..facts.clone() }, via_node, restriction, passage }
     }
 
-    pub(crate) fn key(&self) -> TurnKey {
+    pub(crate) fn key(&self) -> TurnOrder {
         let Movement { from, to, .. } = self.facts.movement;
         let passage = !self.facts.through.is_empty();
         (passage, if passage { NodeId::new(0) } else { self.via_node }, from, to)
@@ -119,12 +119,12 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
 /// Writes turns into the table `turn` and returns the box around them. Each comes with its number in the whole network.
 pub(crate) async fn write(
     to: &mut impl Takes,
-    turns: impl Iterator<Item = io::Result<(TurnNo, Record)>>,
+    turns: impl Iterator<Item = io::Result<(TurnNo, TurnRecord)>>,
 ) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
     for turn in turns {
-        let (index, Record { facts, via_node, restriction, passage }) = turn?;
+        let (index, TurnRecord { facts, via_node, restriction, passage }) = turn?;
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
         bulk.add(i64::from(index) + 1);
@@ -149,7 +149,7 @@ pub(crate) async fn write(
 
 /// Registers the turns as a layer.
 pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    let layer = Layer { table: "turn", geometries: "LINESTRING", description: "Turns at junctions", bounds };
+    let layer = LayerTable { table: "turn", geometries: "LINESTRING", description: "Turns at junctions", bounds };
     layer.add(c, time).await?;
     styles::add(c, "turn", Shows::Turns, time).await
 }
@@ -294,7 +294,7 @@ pub(crate) async fn insert_set(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        let record = |(index, facts)| Ok((index, Record::new(made.network, facts, |edge| edge)));
+        let record = |(index, facts)| Ok((index, TurnRecord::new(made.network, facts, |edge| edge)));
         let bounds = write(c, TurnNo::all().zip(made.facts).map(record)).await?;
         register(c, bounds, time).await?;
         let around = junctions::insert(c, made.junctions.iter().cloned().map(Ok)).await?;

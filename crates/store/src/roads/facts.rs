@@ -8,7 +8,7 @@ use netcert_rows::EdgeFacts;
 
 use crate::columns::read::{line, word, word_or_none};
 use crate::database::Database;
-use crate::database::streamed::Streamed;
+use crate::database::row_stream::RowStream;
 use crate::error::StoreError;
 use crate::roads::key::{edge_key, road_name};
 
@@ -26,7 +26,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn all_edge_facts(&mut self) -> Result<Streamed<'_, EdgeFacts>, StoreError> {
+    pub fn all_edge_facts(&mut self) -> Result<RowStream<'_, EdgeFacts>, StoreError> {
         Ok(self.streamed_plainly(format!("{SELECT} ORDER BY fid"), facts))
     }
 

@@ -14,7 +14,7 @@ use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
-use crate::layers::contents::Layer;
+use crate::layers::contents::LayerTable;
 use crate::layers::styles::{self, Shows};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -65,7 +65,7 @@ impl Database {
 
 /// Registers the areas as a layer.
 pub(crate) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    let layer = Layer { table: "junction", geometries: "MULTIPOLYGON", description: "Areas of junctions", bounds };
+    let layer = LayerTable { table: "junction", geometries: "MULTIPOLYGON", description: "Areas of junctions", bounds };
     layer.add(c, time).await?;
     styles::add(c, "junction", Shows::Junctions, time).await
 }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
-use crate::network::{Areas, Crossings, Edge, EdgeNo, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
+use crate::network::{Areas, Crossings, Edge, EdgeNo, Narrowing, Network, Road, RoadEnds, Site, Splits, Stroke};
 use crate::osm::facts::class_and_link;
 use crate::osm::facts::{CrossSection, Legal, Limit, RuleSet, Strip};
 use crate::osm::{LonLat, NodeId, StringPool};
@@ -76,7 +76,7 @@ async fn read(c: &mut SqliteConnection) -> Sql<Network> {
         splits: Splits::default(),
         crossings: Crossings::default(),
         site: Site::default(),
-        ends: Ends::default(),
+        ends: RoadEnds::default(),
         strings,
     };
     check_ranges(&network)?;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::network::{Area, Edge, EdgeNo, Narrowing, Portion, PortionRestriction, Road};
-use crate::osm::changes::Kind;
+use crate::network::{Edge, EdgeNo, MappedArea, Narrowing, Portion, PortionRestriction, Road};
+use crate::osm::changes::ObjectKind;
 use crate::osm::facts::{BackdropKind, CrossSection};
 use crate::osm::{Backdrop, LonLat};
 use netcert_rows::EdgeMeasure;
@@ -25,7 +25,7 @@ pub(crate) struct RoadRow {
 
 /// A directed edge. `edge` has no road and no ranges.
 #[derive(PartialEq, Serialize, Deserialize)]
-pub(crate) struct EdgeRow {
+pub(crate) struct MapEdgeRow {
     pub(crate) edge: Edge,
     /// The edge's road, as an index into the whole network.
     pub(crate) road: u32,
@@ -49,7 +49,7 @@ pub(crate) struct StrokeRow {
 /// The rows of a network by their indices in it; strokes by their first edge.
 pub(crate) struct NetworkRows {
     pub(crate) roads: Sorter<u32, RoadRow>,
-    pub(crate) edges: Sorter<EdgeNo, EdgeRow>,
+    pub(crate) edges: Sorter<EdgeNo, MapEdgeRow>,
     pub(crate) strokes: Sorter<EdgeNo, StrokeRow>,
 }
 
@@ -80,9 +80,9 @@ impl NetworkRows {
 /// What portions and the reader bring beside the network.
 pub(crate) struct MapRows {
     pub(crate) restrictions: Vec<PortionRestriction>,
-    pub(crate) areas: Vec<Area>,
+    pub(crate) areas: Vec<MappedArea>,
     /// By kind and object, the order of drawing.
-    pub(crate) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
+    pub(crate) backdrop: Sorter<(BackdropKind, (ObjectKind, i64)), Backdrop>,
 }
 
 impl MapRows {
@@ -100,7 +100,7 @@ impl MapRows {
 /// An edge, with its road at the first edge of it.
 pub(crate) struct NetworkRow {
     pub(crate) road: Option<RoadRow>,
-    pub(crate) edge: EdgeRow,
+    pub(crate) edge: MapEdgeRow,
 }
 
 /// The edges that a portion owns with their numbers in the whole network, in order. `measures` has one entry per edge of the portion's
@@ -127,7 +127,7 @@ pub(crate) fn edge_rows(portion: &Portion, measures: &[EdgeMeasure]) -> impl Ite
         };
         let owned = (first_index..).map(EdgeNo::new).zip(of_road).filter(|(index, _)| portion.owns(*index));
         Some(owned.map(move |(index, edge)| {
-            let row = EdgeRow {
+            let row = MapEdgeRow {
                 edge: Edge { road: 0, shape: 0..0, narrowings: 0..0, ..edge.clone() },
                 road: portion.road(edge.road),
                 place: place(edge),

@@ -17,7 +17,7 @@ use crate::error::content;
 use crate::file::blob;
 use crate::file::bulk::{Bulk, Takes};
 use crate::file::companions::sorter;
-use crate::roads::network_rows::{EdgeRow, NetworkRows, RoadRow, StrokeRow};
+use crate::roads::network_rows::{MapEdgeRow, NetworkRows, RoadRow, StrokeRow};
 use netcert_files::sorter::{Sorted, Sorter};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -44,13 +44,13 @@ pub(crate) async fn write(
 }
 
 /// Writes the table of roads, with their sections and limits.
-pub(crate) struct Roads {
+pub(crate) struct RoadWriter {
     sections: Distinct<[Option<(u32, u32, u8)>; 3]>,
     legals: Distinct<LegalKey>,
     bulk: Bulk,
 }
 
-impl Roads {
+impl RoadWriter {
     pub(crate) fn new() -> Self {
         let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 11));
         Self { sections, legals, bulk: Bulk::new("road", 17) }
@@ -109,7 +109,7 @@ pub(crate) struct Ranges {
 
 impl Ranges {
     /// Goes on to the next edge. Returns whether its piece of road is a new one.
-    pub(crate) fn next(&mut self, row: &EdgeRow) -> bool {
+    pub(crate) fn next(&mut self, row: &MapEdgeRow) -> bool {
         let same_road = self.road == Some(row.road);
         if same_road && row.place == self.place {
             return false;
@@ -127,10 +127,10 @@ impl Ranges {
 async fn roads_and_edges(
     to: &mut impl Takes,
     mut roads: Sorted<u32, RoadRow>,
-    edges: Sorted<EdgeNo, EdgeRow>,
+    edges: Sorted<EdgeNo, MapEdgeRow>,
     boxes: &mut Sorter<(u64, EdgeNo), Bounds>,
 ) -> Sql<Written> {
-    let mut of_roads = Roads::new();
+    let mut of_roads = RoadWriter::new();
     let mut current: Option<(u32, RoadRow)> = None;
     let mut bulk = Bulk::new("edge", 41);
     let mut narrowings = Narrowings::new();
@@ -170,7 +170,7 @@ impl Narrowings {
     }
 
     /// Writes those of an edge whose piece of road is a new one.
-    pub(crate) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &EdgeRow) -> Sql<()> {
+    pub(crate) async fn write(&mut self, to: &mut impl Takes, ranges: &Ranges, row: &MapEdgeRow) -> Sql<()> {
         for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
             self.0.add(no);
             self.0.add(narrowing.vertex);
@@ -191,11 +191,11 @@ pub(crate) async fn write_edge(
     to: &mut impl Takes,
     bulk: &mut Bulk,
     index: EdgeNo,
-    row: EdgeRow,
+    row: MapEdgeRow,
     road: &RoadRow,
     ranges: &Ranges,
 ) -> Sql<Bounds> {
-    let EdgeRow { edge, mut shape, section, measure, road: road_no, .. } = row;
+    let MapEdgeRow { edge, mut shape, section, measure, road: road_no, .. } = row;
     if edge.direction == Direction::Backward {
         shape.reverse();
     }

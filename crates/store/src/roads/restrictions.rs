@@ -3,7 +3,7 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::network::{EdgeNo, PortionRestriction, Restriction};
+use crate::network::{EdgeNo, ForbiddenSequence, PortionRestriction};
 use crate::osm::facts::RestrictionKind;
 
 use crate::columns::read::{index, range, rows};
@@ -15,7 +15,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// A network's restrictions: [`crate::network::Network::restrictions`] and the edges that they refer to.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Restrictions {
-    pub(crate) all: Vec<Restriction>,
+    pub(crate) all: Vec<ForbiddenSequence>,
     pub(crate) edges: Vec<EdgeNo>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrict
         if edges.start.saturating_add(2) > edges.end || edges.end as usize > sequence.len() {
             return Err(content("a turn restriction points outside its table"));
         }
-        Ok(Restriction { relation_id: row.try_get(0)?, kind, conditional: row.try_get(2)?, edges })
+        Ok(ForbiddenSequence { relation_id: row.try_get(0)?, kind, conditional: row.try_get(2)?, edges })
     })
     .await?;
     Ok(Restrictions { all, edges: sequence })

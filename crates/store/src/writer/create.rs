@@ -14,7 +14,7 @@ use crate::error::StoreError;
 use crate::file::companions::has_journal;
 use crate::file::schema::{BEFORE_DATA, migrate};
 use crate::file::session::Session;
-use crate::file::unfinished::UnfinishedFile;
+use crate::file::unfinished_file::UnfinishedFile;
 use crate::register::evidence::Register;
 use crate::results::settings;
 use crate::results::write_order::CertificateSorter;

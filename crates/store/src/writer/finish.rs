@@ -9,7 +9,7 @@ use crate::error::StoreError;
 use crate::file::companions::with_suffix;
 use crate::file::schema::migrate;
 use crate::file::session::Session;
-use crate::layers::contents::{self, Layer};
+use crate::layers::contents::{self, LayerTable};
 use crate::layers::styles::{self, Shows};
 use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::register::evidence;
@@ -39,7 +39,7 @@ impl Writer {
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let (vehicles, account) = (&self.vehicles, &self.account);
         let description = "Directed edges of the road network";
-        let layer = Layer { table: "edge", geometries: "LINESTRING", description, bounds };
+        let layer = LayerTable { table: "edge", geometries: "LINESTRING", description, bounds };
         let run_id = session.run(async |c| {
             layer.add(c, &run.finished).await?;
             styles::add(c, "edge", Shows::Edges, &run.finished).await?;

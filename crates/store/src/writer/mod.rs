@@ -10,7 +10,7 @@ use std::io;
 use std::path::Path;
 
 use crate::account::AccountRow;
-use crate::network::{Area, EdgeNo, Portion};
+use crate::network::{EdgeNo, MappedArea, Portion};
 use crate::osm::facts::Policy;
 use crate::osm::{Backdrop, NodeId};
 use netcert_roads::turns::{JunctionArea, TurnFacts, TurnNo};
@@ -19,18 +19,18 @@ use netcert_rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCer
 use crate::columns::set_no::SetNo;
 use crate::error::StoreError;
 use crate::file::companions::{sorter, with_suffix};
-use crate::file::unfinished::UnfinishedFile;
+use crate::file::unfinished_file::UnfinishedFile;
 use crate::provenance::records::VehicleRecord;
 use crate::register::evidence::Register;
 use crate::results::carry_over::StoredCertificate;
 use crate::results::checkpoint::{self, Checkpoint};
 use crate::results::compact::CompactCertificate;
-use crate::results::turns::{self, TurnKey};
+use crate::results::turns::{self, TurnOrder};
 use crate::results::write_order::CertificateSorter;
 use crate::roads::map_changes::MapChanges;
 use crate::roads::network_rows::MapRows;
 use crate::roads::network_thread::NewNetwork;
-use crate::writer::placing::Older;
+use crate::writer::placing::OlderRegister;
 use netcert_files::sorter::Sorter;
 
 /// The number of a vehicle in a [`Writer`].
@@ -49,7 +49,7 @@ pub struct Writer {
     certificates: CertificateSorter,
     turns: Option<Turns>,
     /// Nothing if there is no older database, or none with measurements that can be read.
-    older: Option<Older>,
+    older: Option<OlderRegister>,
     /// The register to write.
     evidence: Register,
     map_changes: MapChanges,
@@ -60,7 +60,7 @@ pub struct Writer {
 /// Turns and the areas of their junctions, as portions bring them.
 struct Turns {
     /// By their places in the whole network: the turns with their numbers in the order of their arrival.
-    rows: Sorter<TurnKey, (u32, turns::Record)>,
+    rows: Sorter<TurnOrder, (u32, turns::TurnRecord)>,
     count: u32,
     /// By node.
     junctions: Sorter<NodeId, JunctionArea>,
@@ -139,7 +139,7 @@ impl Writer {
     }
 
     /// Adds the areas of the whole network.
-    pub fn areas(&mut self, areas: Vec<Area>) {
+    pub fn areas(&mut self, areas: Vec<MappedArea>) {
         self.map_rows.areas = areas;
     }
 
@@ -194,7 +194,7 @@ impl Writer {
         };
         let first = TurnNo::new(turns.count);
         for facts in facts {
-            let record = turns::Record::new(&portion.network, facts, |edge| portion.edge(edge));
+            let record = turns::TurnRecord::new(&portion.network, facts, |edge| portion.edge(edge));
             turns.rows.push(record.key(), &(turns.count, record)).map_err(at)?;
             turns.count += 1;
         }

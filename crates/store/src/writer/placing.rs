@@ -10,13 +10,17 @@ use crate::database::register_state::RegisterState;
 use crate::error::{StoreError, content};
 use crate::file::companions::has_journal;
 use crate::file::session::Session;
-use crate::file::unfinished::UnfinishedFile;
+use crate::file::unfinished_file::UnfinishedFile;
 use crate::register::evidence::Register;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// Checks a part that is complete, and puts it in place of the older database.
-pub(crate) fn put_in_place(session: Session, part: UnfinishedFile, older: Option<&Older>) -> Result<(), StoreError> {
+pub(crate) fn put_in_place(
+    session: Session,
+    part: UnfinishedFile,
+    older: Option<&OlderRegister>,
+) -> Result<(), StoreError> {
     session.close()?;
     check(&part.path, &part.target)?;
     settle(&part.target)?;
@@ -25,10 +29,10 @@ pub(crate) fn put_in_place(session: Session, part: UnfinishedFile, older: Option
 }
 
 /// The register of an older database, with its state, or why it cannot be read.
-pub(crate) type Older = Result<(Register, RegisterState), StoreError>;
+pub(crate) type OlderRegister = Result<(Register, RegisterState), StoreError>;
 
 /// Refuses to lose measurements that somebody added to the older database meanwhile.
-fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), StoreError> {
+fn nothing_added_meanwhile(target: &Path, older: Option<&OlderRegister>) -> Result<(), StoreError> {
     let Some(Ok((_, before))) = older else { return Ok(()) };
     match Database::open(target).and_then(|mut older| older.register_state()) {
         Ok(now) if now != *before => Err(StoreError::RegisterChanged(target.to_owned())),

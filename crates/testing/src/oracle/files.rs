@@ -14,7 +14,7 @@ const FLEET: usize = 20;
 const RANDOM: usize = 256;
 
 /// One case: vehicle, corridor file, and the plan's largest distance from the centreline.
-pub struct Case {
+pub struct OracleCase {
     pub index: u64,
     pub vehicle: Vehicle,
     pub given: FileCorridor,
@@ -22,7 +22,7 @@ pub struct Case {
 }
 
 /// The case with this number.
-pub fn case(index: u64) -> Case {
+pub fn case(index: u64) -> OracleCase {
     let mut draw = Draw(0xf11e_5eed + 7919 * index);
     let vehicle = match draw.below(FLEET + RANDOM) {
         // Vehicles of the fleet are as likely as random ones.
@@ -33,7 +33,7 @@ pub fn case(index: u64) -> Case {
     loop {
         // A drawn line that no curve follows is refused with a reason. Then the next line is tried.
         if let Some(given) = corridor(&mut draw, &vehicle) {
-            return Case { index, vehicle, given, options: Options { max_shift_m, ..Options::default() } };
+            return OracleCase { index, vehicle, given, options: Options { max_shift_m, ..Options::default() } };
         }
     }
 }

@@ -17,8 +17,8 @@ use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
-use netcert_check::{Finding, Outcome, Reading, Subject, TOLERANCE_M, finding};
-use netcert_check::{plan, printed};
+use netcert_check::{Finding, Outcome, StationReading, Subject, TOLERANCE_M, finding};
+use netcert_check::{paper_rsc, plan};
 
 /// Tolerance of widths, metres. Strips are measured across the way's line and widths across the corridor's centreline, which
 /// differ by the angle between the two lines.
@@ -137,7 +137,7 @@ impl SetClaim<'_> {
         if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
             return malformed(format!("the plan: {why}"));
         }
-        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), Reading::Lenient) {
+        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), StationReading::Lenient) {
             Ok(subject) => subject,
             // A stroke may have a place that no corridor fits. Only the verdicts unknown and forbidden are confirmed there.
             Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),
@@ -229,7 +229,7 @@ impl SetClaim<'_> {
 
     fn printed(&self, subject: &Subject<'_>, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
         let claimed = row.certificate.rsc_published_m?;
-        let printed_m = printed::most_m(subject, self.vehicle, span.stations.clone());
+        let printed_m = paper_rsc::most_m(subject, self.vehicle, span.stations.clone());
         (claimed > printed_m + TOLERANCE_M)
             .then(|| finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")))
     }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::members::{Members, Wrong};
 use super::rules;
-use crate::corridor::{Area, AreaSpan, Corridor, Frame};
+use crate::corridor::{AreaSpan, Corridor, Frame, PlaneArea};
 use crate::vehicle::Vehicle;
 use netcert_check::plan;
 
@@ -216,7 +216,7 @@ fn areas(
         }
         let rings = area.rings("rings")?.into_iter();
         let rings = rings.map(|ring| metres(frame, ring, &format!("{path}.rings"))).collect::<Result<_, _>>()?;
-        spans.push(AreaSpan { heads: heads[0] as usize..heads[1] as usize + 1, area: Arc::new(Area { rings }) });
+        spans.push(AreaSpan { heads: heads[0] as usize..heads[1] as usize + 1, area: Arc::new(PlaneArea { rings }) });
     }
     Ok(spans)
 }

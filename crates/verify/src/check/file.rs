@@ -12,9 +12,9 @@ use crate::seal;
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
 use netcert_check::SweptVehicle;
+use netcert_check::paper_rsc;
 use netcert_check::plan;
-use netcert_check::printed;
-use netcert_check::{Finding, Outcome, Reading, SpanClaim, Subject, TOLERANCE_M, Weight, finding};
+use netcert_check::{Finding, Outcome, SpanClaim, StationReading, Subject, TOLERANCE_M, Weight, finding};
 
 /// Tolerance of nominal places, metres: the error of chords of a quarter of a station in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;
@@ -99,8 +99,8 @@ const CLAIMS: [&str; 8] =
 impl Document {
     fn check(&self) -> Vec<(String, Outcome)> {
         let chain = Chain::new(&self.vehicle);
-        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), Reading::Strict);
-        let centred = Subject::new(&chain, &self.corridor, |_| 0.0, Reading::Strict);
+        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), StationReading::Strict);
+        let centred = Subject::new(&chain, &self.corridor, |_| 0.0, StationReading::Strict);
         let (along, centred) = match (along, centred) {
             (Ok(along), Ok(centred)) => (along, centred),
             (Err(e), _) | (_, Err(e)) => {
@@ -194,7 +194,7 @@ impl Document {
 
     fn published(&self, along: &Subject<'_>) -> Option<Finding> {
         let claimed_m = self.rsc_published_m?;
-        let printed_m = printed::rsc_m(along, &self.vehicle, 0..self.corridor.len());
+        let printed_m = paper_rsc::rsc_m(along, &self.vehicle, 0..self.corridor.len());
         let detail = format!("{claimed_m} is claimed, found {printed_m:.4}");
         ((claimed_m - printed_m).abs() > PRINTED_M.max(PRINTED_SHARE * printed_m.abs()))
             .then(|| finding("rsc_published_m", &detail))

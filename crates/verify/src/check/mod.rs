@@ -24,7 +24,7 @@ pub use database::{RowOutcome, SetClaim, SetReport};
 pub use file::{Report, certificate};
 pub use netcert_check::plan::shift;
 pub use netcert_check::{
-    Chain, Finding, Interval, Outcome, Reading, RoadError, SpanClaim, Subject, TOLERANCE_M, Weight,
+    Chain, Finding, Interval, Outcome, RoadError, SpanClaim, StationReading, Subject, TOLERANCE_M, Weight,
 };
 pub use rules::ENDED;
 pub use turns::TurnsClaim;

@@ -20,8 +20,8 @@ use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use crate::watch::{self, TookTooLong, Work};
 use netcert_check::Chain;
-use netcert_check::{Finding, Outcome, Reading, Subject, TOLERANCE_M, finding};
-use netcert_check::{plan, printed};
+use netcert_check::{Finding, Outcome, StationReading, Subject, TOLERANCE_M, finding};
+use netcert_check::{paper_rsc, plan};
 
 /// Number of rows that are checked together, so that the strokes that they need are made once.
 const BATCH: usize = 512;
@@ -237,7 +237,7 @@ impl TurnsClaim<'_> {
         if let Err(why) = rules::shift(coefficients, self.max_shift_m) {
             return (Outcome::Malformed(format!("the plan: {why}")), 0.0);
         }
-        let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), Reading::Lenient) {
+        let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), StationReading::Lenient) {
             Ok(subject) => subject,
             Err(e) => return (Outcome::Malformed(format!("its corridor: {e}")), 0.0),
         };
@@ -247,7 +247,7 @@ impl TurnsClaim<'_> {
         if follows != said.verdict {
             found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }
-        let printed_m = printed::most_m(&subject, self.vehicle, path.counted.clone());
+        let printed_m = paper_rsc::most_m(&subject, self.vehicle, path.counted.clone());
         if let Some(claimed) = said.rsc_published_m.filter(|claimed| *claimed > printed_m + TOLERANCE_M) {
             found.push(finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")));
         }

@@ -1,7 +1,7 @@
 //! The figure of left and right leeway along the route, before and after correction. It shows Algorithm 1 with β° as
 //! printed, Algorithm 1 with the β of least trace, and netcert's certificate.
 
-use netcert::picture::{Chart, Frame, Key, Picture, Scale, Style, TextStyle, legend, palette};
+use netcert::picture::{Chart, LegendEntry, PageFrame, Picture, Scale, Style, TextStyle, legend, palette};
 use netcert::published::{Correction, Leeway, RouteCert};
 
 use super::super::simulate::Simulated;
@@ -25,7 +25,7 @@ pub(super) fn figure(five: &Simulated, tight: &Simulated, lane: &Simulated) -> S
     heading(&mut picture, &title, &[says]);
     let before = Style::line(palette::VERMILLION, 2.4).dashed(7.0, 5.0);
     let after = Style::line(palette::BLUE, 2.4);
-    let keys = [Key::new(before, "before correction"), Key::new(after, "after correction")];
+    let keys = [LegendEntry::new(before, "before correction"), LegendEntry::new(after, "after correction")];
     legend(&mut picture, [WIDTH - 210.0, 24.0], &keys);
     for (row, (name, sides)) in rows(five, tight, lane).iter().enumerate() {
         let y = TOP + ROW * row as f64;
@@ -35,7 +35,7 @@ pub(super) fn figure(five: &Simulated, tight: &Simulated, lane: &Simulated) -> S
             let x = 90.0 + column as f64 * 0.5 * WIDTH;
             let length_m = five.corridor.spacing_m * (five.corridor.len() as f64 - 1.0);
             let chart = Chart {
-                frame: Frame { x, y: y + 8.0, width: 0.5 * WIDTH - 120.0, height: ROW - 90.0 },
+                frame: PageFrame { x, y: y + 8.0, width: 0.5 * WIDTH - 120.0, height: ROW - 90.0 },
                 x: Scale::new(0.0, length_m, "along the route, m"),
                 y: Scale::new(scale[0], scale[1], &format!("{side} leeway, m")).ticks(5),
             };

@@ -62,7 +62,7 @@ impl Mark {
             Self::Disc => picture.circle(at, 6.0, Style::area(colour)),
             Self::Ring => picture.circle(at, 5.5, Style::area(palette::PAPER).outlined(colour, 2.2)),
             Self::Square => {
-                let frame = netcert::picture::Frame { x: x - 5.5, y: y - 5.5, width: 11.0, height: 11.0 };
+                let frame = netcert::picture::PageFrame { x: x - 5.5, y: y - 5.5, width: 11.0, height: 11.0 };
                 picture.rect(frame, 0.0, Style::area(colour));
             }
         }

@@ -1,6 +1,6 @@
 //! The figure of every scenario's certificate over its narrowest half-width: from the table, by Algorithm 1, and by netcert.
 
-use netcert::picture::{Anchor, Chart, Frame, Picture, Scale, Style, TextStyle, palette};
+use netcert::picture::{Anchor, Chart, PageFrame, Picture, Scale, Style, TextStyle, palette};
 
 use super::super::simulate::Simulated;
 use super::{Mark, heading, marks};
@@ -35,7 +35,7 @@ pub(super) fn figure(simulated: &[Simulated]) -> String {
     let chart = chart(&values);
     chart.axes(&mut picture);
     let (below, right) = (chart.at(chart.x.low, 0.0), chart.at(chart.x.high, chart.y.low));
-    let unsafe_area = Frame { x: below[0], y: below[1], width: right[0] - below[0], height: right[1] - below[1] };
+    let unsafe_area = PageFrame { x: below[0], y: below[1], width: right[0] - below[0], height: right[1] - below[1] };
     picture.rect(unsafe_area, 0.0, Style::area(palette::VERMILLION).filled_at(0.07));
     chart.level(&mut picture, 0.0, Style::line(palette::INK, 1.6));
     let small = TextStyle::size(13.0).coloured(palette::GREY).anchored(Anchor::End);
@@ -60,7 +60,7 @@ fn chart(values: &[[f64; 4]]) -> Chart {
     let (first, last) = values.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v[0]), b.max(v[0])));
     let (first, last) = if first.is_finite() { (first, last) } else { (0.0, 1.0) };
     Chart {
-        frame: Frame { x: 90.0, y: 200.0, width: WIDTH - 130.0, height: HEIGHT - 260.0 },
+        frame: PageFrame { x: 90.0, y: 200.0, width: WIDTH - 130.0, height: HEIGHT - 260.0 },
         x: Scale::new((first - 0.5).floor(), (last + 0.5).ceil(), "narrowest half width w_min, m").ticks(8),
         y: Scale::new(low - 0.6, high + 0.9, "certificate, m").ticks(8),
     }

@@ -1,7 +1,7 @@
 //! The figure of run time over the number of trailers, with the fitted lines. The paper's two times come from another
 //! machine and program, so the figure names them in its text and does not draw them.
 
-use netcert::picture::{Chart, Frame, Picture, Scale, Style, TextStyle, palette};
+use netcert::picture::{Chart, PageFrame, Picture, Scale, Style, TextStyle, palette};
 
 use super::super::timing::{Series, Timing};
 use super::{Mark, heading};
@@ -37,7 +37,7 @@ fn panel(picture: &mut Picture, x: f64, name: &str, series: &Series, colour: pal
     let most_s = series.points.iter().fold(0.0_f64, |most, p| most.max(p.1));
     let most = series.points.last().map_or(1.0, |p| p.0 as f64);
     let chart = Chart {
-        frame: Frame { x, y: 150.0, width: COLUMN - 110.0, height: HEIGHT - 220.0 },
+        frame: PageFrame { x, y: 150.0, width: COLUMN - 110.0, height: HEIGHT - 220.0 },
         x: Scale::new(0.0, most + 0.5, "trailers").ticks(10),
         y: Scale::new(0.0, 1.12e3 * most_s, "run time, ms"),
     };

@@ -1,7 +1,7 @@
 //! The figure of the tubes of all units of a scenario on the route. The left half of each tube is coloured by its leeway to
 //! the left, the right half by its leeway to the right.
 
-use netcert::picture::{Anchor, Bounds, Frame, Picture, Point, Style, TextStyle, View, palette, scale_bar};
+use netcert::picture::{Anchor, BoundingBox, PageFrame, Picture, Point, Style, TextStyle, View, palette, scale_bar};
 use netcert::published::{As, Leeway, Reading, Stet, boundary_leeway};
 
 use super::super::simulate::Simulated;
@@ -33,7 +33,7 @@ pub(super) fn figure(s: &Simulated) -> String {
     let size = [WIDTH / columns as f64, (HEIGHT - TOP - BAR) / rows as f64];
     for (unit, (tube, leeway)) in s.paper.tubes.iter().zip(&leeway).enumerate() {
         let corner = [(unit % columns) as f64 * size[0], TOP + (unit / columns) as f64 * size[1]];
-        let frame = Frame { x: corner[0], y: corner[1], width: size[0], height: size[1] };
+        let frame = PageFrame { x: corner[0], y: corner[1], width: size[0], height: size[1] };
         panel(&mut picture, s, &UnitTube { unit, tube, leeway }, frame.inset(18.0), range);
     }
     colour_bar(&mut picture, range);
@@ -59,13 +59,14 @@ struct UnitTube<'a> {
     leeway: &'a [Leeway],
 }
 
-fn panel(picture: &mut Picture, s: &Simulated, of_unit: &UnitTube<'_>, frame: Frame, range: [f64; 2]) {
+fn panel(picture: &mut Picture, s: &Simulated, of_unit: &UnitTube<'_>, frame: PageFrame, range: [f64; 2]) {
     let UnitTube { unit, tube, leeway } = *of_unit;
-    let edges = |side: fn(&netcert::published::Route, usize) -> Point| -> Vec<Point> {
+    let edges = |side: fn(&netcert::published::TimedRoute, usize) -> Point| -> Vec<Point> {
         (0..s.route.len()).map(|i| side(&s.route, i)).collect()
     };
-    let (left, right) = (edges(netcert::published::Route::left), edges(netcert::published::Route::right));
-    let view = View::fit(&Bounds::of(left.iter().chain(&right)), Frame { y: frame.y + 20.0, ..frame }.inset(8.0));
+    let (left, right) = (edges(netcert::published::TimedRoute::left), edges(netcert::published::TimedRoute::right));
+    let view =
+        View::fit(&BoundingBox::of(left.iter().chain(&right)), PageFrame { y: frame.y + 20.0, ..frame }.inset(8.0));
     let outline: Vec<Point> = left.iter().chain(right.iter().rev()).map(|&p| view.at(p)).collect();
     picture.group("panel", |p| {
         p.polygon(&outline, Style::area(palette::ROAD).outlined(palette::GREY, 1.2));
@@ -107,8 +108,12 @@ fn colour_bar(picture: &mut Picture, [low, high]: [f64; 2]) {
         let steps = 120;
         for k in 0..steps {
             let share = (f64::from(k) + 0.5) / f64::from(steps);
-            let frame =
-                Frame { x: x + width * f64::from(k) / f64::from(steps), y, width: width / 120.0 + 0.5, height: 16.0 };
+            let frame = PageFrame {
+                x: x + width * f64::from(k) / f64::from(steps),
+                y,
+                width: width / 120.0 + 0.5,
+                height: 16.0,
+            };
             p.rect(frame, 0.0, Style::area(palette::sequential(share)));
         }
         let style = TextStyle::size(13.0).anchored(Anchor::Middle);

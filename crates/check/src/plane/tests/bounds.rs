@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn an_oblique_wall_at_a_front_corner_takes_less_than_deviations_to_all_sides() {
     let (chain, corridor) = (semi(), walled(0.6));
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let steps = (subject.road.lead + 90) * STEPS..(subject.road.lead + 99) * STEPS;
     let proved = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
@@ -23,7 +23,7 @@ fn an_oblique_wall_at_a_front_corner_takes_less_than_deviations_to_all_sides() {
 #[test]
 fn no_deviation_within_the_bounds_is_farther_in_any_direction() {
     let (chain, corridor) = (semi(), turn_left());
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut random = random(7);
     let mut between = |[from, to]: [f64; 2]| from + (to - from) * random();
@@ -65,7 +65,7 @@ fn no_deviation_within_the_bounds_is_farther_in_any_direction() {
 #[test]
 fn in_a_turn_the_bound_is_the_nominal_distance_less_the_deviation() {
     let (chain, corridor) = (semi(), turn_left());
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let steps = swept.steps(100..190);
     let proved = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());

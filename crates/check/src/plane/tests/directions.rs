@@ -7,7 +7,7 @@ use super::*;
 #[test]
 fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
     let (chain, corridor) = (semi(), turn_left());
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut aslant = 0;
     for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1), (170, 0), (170, 1)] {
@@ -44,7 +44,7 @@ fn a_vertex_beside_a_corner_is_judged_in_the_best_direction() {
 #[test]
 fn a_place_beyond_a_long_wall_lacks_its_depth_and_its_deviation_across() {
     let (chain, corridor) = (semi(), turn_left());
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     let mut less = 0;
     for (station, unit) in [(130, 0), (130, 1), (150, 0), (150, 1)] {
@@ -84,7 +84,7 @@ fn what_is_missing_grows_evenly_as_a_corner_passes_over_a_wall() {
     let (link, mut stray_m) = (&chain.links[0], 0.0);
     let mut proved_m = |beyond_m: f64| {
         let corridor = walled(-beyond_m);
-        let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+        let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
         let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.05);
         let steps = (subject.road.lead + 90) * STEPS..(subject.road.lead + 99) * STEPS;
         let proved_m = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());

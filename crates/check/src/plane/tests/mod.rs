@@ -9,14 +9,14 @@ use super::*;
 use crate::areas::MOST_VERTICES;
 use crate::chain::Chain;
 use crate::claim::{SpanClaim, Weight};
-use crate::drawn::{chain, random, unit};
 use crate::feet::{Foot, point};
-use crate::fit::Reading;
+use crate::fit::StationReading;
 use crate::hull::{to_segment, way};
 use crate::subject::Subject;
+use crate::test_vehicles::{chain, random, unit};
 use crate::vector::{framed, length};
 use crate::{STEPS, TOLERANCE_M};
-use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
+use netcert_base::corridor::{AreaSpan, Corridor, CurvatureProfile, PlaneArea};
 use netcert_base::vehicle::Unit;
 
 /// A tractor with a semi-trailer, 16 m long.
@@ -29,10 +29,10 @@ fn square([x, y]: Point, half: f64) -> Vec<Point> {
 }
 
 /// Rings given along a straight road from `start` with `heading`, as an area of the plane.
-fn area(start: Point, heading: f64, rings: &[Vec<Point>]) -> Arc<Area> {
+fn area(start: Point, heading: f64, rings: &[Vec<Point>]) -> Arc<PlaneArea> {
     let (sin, cos) = heading.sin_cos();
     let place = |[x, y]: &Point| [start[0] + x * cos - y * sin, start[1] + x * sin + y * cos];
-    Arc::new(Area { rings: rings.iter().map(|ring| ring.iter().map(place).collect()).collect() })
+    Arc::new(PlaneArea { rings: rings.iter().map(|ring| ring.iter().map(place).collect()).collect() })
 }
 
 const START: Point = [1000.0, -500.0];
@@ -58,12 +58,13 @@ fn claim(stations: Range<usize>, rsc_m: f64) -> SpanClaim {
 }
 
 fn confirmed(chain: &Chain, corridor: &Corridor, claim: &SpanClaim) -> bool {
-    Subject::new(chain, corridor, |_| 0.0, Reading::Strict).unwrap().check(std::slice::from_ref(claim))[0].is_empty()
+    Subject::new(chain, corridor, |_| 0.0, StationReading::Strict).unwrap().check(std::slice::from_ref(claim))[0]
+        .is_empty()
 }
 
 /// The greatest RSC that is confirmed on some stations, to 0.1 mm.
 fn most(chain: &Chain, corridor: &Corridor, stations: Range<usize>) -> f64 {
-    let subject = Subject::new(chain, corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(chain, corridor, |_| 0.0, StationReading::Strict).unwrap();
     bisect(|rsc_m| subject.check(&[claim(stations.clone(), rsc_m)])[0].is_empty())
 }
 
@@ -110,7 +111,7 @@ fn a_narrower_area_is_refuted_and_the_place_is_named() {
     let chain = semi();
     let rsc_m = most(&chain, &straight(&[(0..160, vec![strip(2.2)])]), 70..90);
     let narrow = straight(&[(0..160, vec![strip(2.2 - 0.004)])]);
-    let subject = Subject::new(&chain, &narrow, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &narrow, |_| 0.0, StationReading::Strict).unwrap();
     let found = subject.check(&[claim(70..90, rsc_m)]);
     assert_eq!(found[0].len(), 1);
     assert!(found[0][0].detail.contains("in an area"), "{}", found[0][0].detail);
@@ -123,7 +124,7 @@ fn claims_that_share_steps_are_decided_each_for_itself() {
     let chain = semi();
     let corridor = straight(&[(0..160, vec![strip(2.2)])]);
     let rsc_m = most(&chain, &corridor, 70..90);
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let claims = [claim(70..90, rsc_m), claim(75..95, rsc_m + 0.2), claim(60..100, rsc_m - 0.2)];
     assert_eq!(subject.check(&claims).iter().map(Vec::len).collect::<Vec<_>>(), [0, 1, 0]);
 }
@@ -155,7 +156,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     // The steer axle is at station 60. The semi-trailer reaches from 58 m back to 45 m.
     let hole = vec![strip(6.0), square([50.0, 0.1], 0.1)];
     let begins = straight(&[(60..160, hole.clone())]);
-    let subject = Subject::new(&chain, &begins, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &begins, |_| 0.0, StationReading::Strict).unwrap();
     let motion = subject.motion.as_ref().unwrap();
     let first = (subject.road.lead + 60) * STEPS;
     let mut swept = SweptVehicle::new(&chain, &subject.road, motion, 0.15);
@@ -165,7 +166,7 @@ fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
     assert!((found.at[0].abs() < 6.0 && found.at[1].abs() < 0.5), "{found:?}");
     // The same where one of two areas ends.
     let ends = straight(&[(20..61, vec![strip(6.0)]), (20..160, hole)]);
-    let subject = Subject::new(&chain, &ends, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &ends, |_| 0.0, StationReading::Strict).unwrap();
     let mut swept = SweptVehicle::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
     assert_eq!(swept.cramped(&[(first - 8..first, 0.0)], None), [None]);
     assert_eq!(swept.cramped(&[(first - 8..first + 8, 0.0)], None)[0].unwrap().step, first);
@@ -206,7 +207,7 @@ fn some_millimetres_of_what_is_missing_are_a_remark() {
     let chain = semi();
     let weights = |half: f64, more_m: f64| -> Vec<Weight> {
         let corridor = straight(&[(0..160, vec![strip(half)])]);
-        let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+        let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
         let asked = claim(40..110, most(&chain, &corridor, 40..110) + more_m);
         subject.check(&[asked]).remove(0).into_iter().map(|finding| finding.weight).collect()
     };
@@ -221,7 +222,7 @@ fn columns_claim_nothing_in_areas() {
     let chain = semi();
     // The steer axle is in the area from station 40 to 120. So no corridor step touches what is 60 to 100.
     let corridor = straight(&[(40..121, vec![strip(2.2)])]);
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let column = |stations: Range<usize>| -> Vec<Option<f64>> {
         (0..160).map(|k| stations.contains(&k).then_some(9.0)).collect()
     };
@@ -253,7 +254,7 @@ fn malformed_areas_are_refused_with_a_reason() {
     let chain = semi();
     let refused = |heads: Range<usize>, rings: Vec<Vec<Point>>| {
         let corridor = straight(&[(heads, rings)]);
-        Subject::new(&chain, &corridor, |_| 0.0, Reading::Lenient).err().map(|error| error.to_string()).unwrap()
+        Subject::new(&chain, &corridor, |_| 0.0, StationReading::Lenient).err().map(|error| error.to_string()).unwrap()
     };
     let many: Vec<Point> = (0..=MOST_VERTICES).map(|k| [k as f64, 0.0]).collect();
     #[allow(clippy::reversed_empty_ranges)]
@@ -295,7 +296,7 @@ fn what_is_beyond_the_corridor_when_an_area_ends_is_not_counted() {
     let mut corridor = Corridor::from_curvature(spacing, START, HEADING, &profile.curvature, 3.0, 7.0);
     let last = corridor.len() - 1;
     corridor.areas = vec![AreaSpan { heads: 100..last, area: area(START, HEADING, &[square([30.0, 0.0], 90.0)]) }];
-    let subject = Subject::new(&chain, &corridor, |_| 0.0, Reading::Strict).unwrap();
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, StationReading::Strict).unwrap();
     let (motion, end) = (subject.motion.as_ref().unwrap(), (subject.road.lead + last) as f64);
     let mut least = [f64::INFINITY; 2];
     for node in (subject.road.lead + last - 1) * STEPS..motion.steps() {

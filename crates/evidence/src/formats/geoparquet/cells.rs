@@ -13,7 +13,7 @@ use parquet::schema::types::ColumnDescriptor;
 use crate::columns::real_text;
 
 /// One cell.
-pub(super) enum Cell {
+pub(super) enum ParquetCell {
     Empty,
     Text(String),
     Bytes(Vec<u8>),
@@ -25,7 +25,7 @@ pub(super) enum Cell {
 const BATCH: usize = 4096;
 
 /// The cells of a leaf in a group of rows.
-pub(super) fn read(group: &dyn RowGroupReader, leaf: usize, rows: usize) -> Result<Vec<Cell>, ParquetError> {
+pub(super) fn read(group: &dyn RowGroupReader, leaf: usize, rows: usize) -> Result<Vec<ParquetCell>, ParquetError> {
     let chunk = group.metadata().columns().get(leaf);
     let chunk = chunk.ok_or_else(|| ParquetError::General("a column is missing".to_owned()))?;
     let column = chunk.column_descr();
@@ -34,23 +34,27 @@ pub(super) fn read(group: &dyn RowGroupReader, leaf: usize, rows: usize) -> Resu
         return Err(ParquetError::General("a negative offset".to_owned()));
     }
     if column.max_rep_level() > 0 || column.path().parts().len() > 1 {
-        return Ok((0..rows).map(|_| Cell::Other).collect());
+        return Ok((0..rows).map(|_| ParquetCell::Other).collect());
     }
     Ok(match group.get_column_reader(leaf)? {
-        ColumnReader::BoolColumnReader(reader) => cells(reader, column, rows, |flag| Cell::Text(flag.to_string()))?,
+        ColumnReader::BoolColumnReader(reader) => {
+            cells(reader, column, rows, |flag| ParquetCell::Text(flag.to_string()))?
+        }
         ColumnReader::Int32ColumnReader(reader) => {
             cells(reader, column, rows, |value| whole(column, i64::from(value)))?
         }
         ColumnReader::Int64ColumnReader(reader) => cells(reader, column, rows, |value| whole(column, value))?,
         // Through the text of the single: 3.3 stays 3.3.
         ColumnReader::FloatColumnReader(reader) => cells(reader, column, rows, |value| {
-            value.to_string().parse().map_or(Cell::Other, |value| Cell::Text(real_text(value)))
+            value.to_string().parse().map_or(ParquetCell::Other, |value| ParquetCell::Text(real_text(value)))
         })?,
-        ColumnReader::DoubleColumnReader(reader) => cells(reader, column, rows, |value| Cell::Text(real_text(value)))?,
-        ColumnReader::ByteArrayColumnReader(reader) if !decimal(column) => {
-            cells(reader, column, rows, |bytes| Cell::Bytes(bytes.data().to_vec()))?
+        ColumnReader::DoubleColumnReader(reader) => {
+            cells(reader, column, rows, |value| ParquetCell::Text(real_text(value)))?
         }
-        _ => (0..rows).map(|_| Cell::Other).collect(),
+        ColumnReader::ByteArrayColumnReader(reader) if !decimal(column) => {
+            cells(reader, column, rows, |bytes| ParquetCell::Bytes(bytes.data().to_vec()))?
+        }
+        _ => (0..rows).map(|_| ParquetCell::Other).collect(),
     })
 }
 
@@ -58,8 +62,8 @@ fn cells<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     column: &ColumnDescriptor,
     rows: usize,
-    cell: impl Fn(T::T) -> Cell,
-) -> Result<Vec<Cell>, ParquetError> {
+    cell: impl Fn(T::T) -> ParquetCell,
+) -> Result<Vec<ParquetCell>, ParquetError> {
     let mut out = Vec::new();
     while out.len() < rows {
         let (mut levels, mut values) = (Vec::new(), Vec::new());
@@ -74,7 +78,7 @@ fn cells<T: DataType>(
         }
         for level in levels {
             let value = if level == column.max_def_level() { values.next() } else { None };
-            out.push(value.map_or(Cell::Empty, &cell));
+            out.push(value.map_or(ParquetCell::Empty, &cell));
         }
     }
     Ok(out)
@@ -86,7 +90,7 @@ fn decimal(column: &ColumnDescriptor) -> bool {
 }
 
 /// An integer, or the day of a time.
-fn whole(column: &ColumnDescriptor, value: i64) -> Cell {
+fn whole(column: &ColumnDescriptor, value: i64) -> ParquetCell {
     let seconds = match (column.logical_type_ref(), column.converted_type()) {
         (Some(LogicalType::Date), _) | (_, ConvertedType::DATE) => value.checked_mul(86_400),
         (Some(LogicalType::Timestamp(time)), _) => Some(value.div_euclid(match time.unit {
@@ -97,11 +101,11 @@ fn whole(column: &ColumnDescriptor, value: i64) -> Cell {
         (_, ConvertedType::TIMESTAMP_MILLIS) => Some(value.div_euclid(1000)),
         (_, ConvertedType::TIMESTAMP_MICROS) => Some(value.div_euclid(1_000_000)),
         (Some(LogicalType::Time { .. }), _) | (_, ConvertedType::TIME_MILLIS | ConvertedType::TIME_MICROS) => None,
-        (_, ConvertedType::UINT_64) => return Cell::Text((value as u64).to_string()),
+        (_, ConvertedType::UINT_64) => return ParquetCell::Text((value as u64).to_string()),
         _ if decimal(column) => None,
-        _ => return Cell::Text(value.to_string()),
+        _ => return ParquetCell::Text(value.to_string()),
     };
-    seconds.and_then(day).map_or(Cell::Other, Cell::Text)
+    seconds.and_then(day).map_or(ParquetCell::Other, ParquetCell::Text)
 }
 
 /// The day of a time in seconds since 1970.

@@ -10,17 +10,17 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMeta
 use parquet::file::reader::{FileReader as _, RowGroupReader, SerializedFileReader};
 use serde_json::Value;
 
-use crate::columns::{Column, Record, columns, is_geometry};
+use crate::columns::{EvidenceColumn, FileRecord, columns, is_geometry};
 use crate::error::Failure;
 use crate::shape::from_wkb;
-use cells::Cell;
+use cells::ParquetCell;
 
 /// All records of a file, numbered from 1. The crate panics on pages whose sizes contradict each other; that is an error here.
-pub(super) fn records(file: File) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(file: File) -> Result<Vec<FileRecord>, Failure> {
     netcert_files::outside::caught(|| read(file)).unwrap_or_else(|| Err(damaged("its pages contradict each other")))
 }
 
-fn read(file: File) -> Result<Vec<Record>, Failure> {
+fn read(file: File) -> Result<Vec<FileRecord>, Failure> {
     let reader = SerializedFileReader::new(file).map_err(|error| failed(&error))?;
     let metadata = reader.metadata();
     check_compression(metadata)?;
@@ -36,8 +36,8 @@ fn read(file: File) -> Result<Vec<Record>, Failure> {
 /// Adds the rows of a group, column by column.
 fn add_group(
     group: &dyn RowGroupReader,
-    columns: &[(usize, Column)],
-    records: &mut Vec<Record>,
+    columns: &[(usize, EvidenceColumn)],
+    records: &mut Vec<FileRecord>,
 ) -> Result<(), Failure> {
     let rows = usize::try_from(group.metadata().num_rows()).map_err(|_| damaged("a negative number of rows"))?;
     let first = records.len();
@@ -47,18 +47,18 @@ fn add_group(
             return Err(damaged("cells are missing"));
         }
         // Only now it is known that there are so many rows.
-        records.extend((records.len()..first + rows).map(|row| Record::new(row as u64 + 1)));
+        records.extend((records.len()..first + rows).map(|row| FileRecord::new(row as u64 + 1)));
         for (record, cell) in records.iter_mut().skip(first).zip(cells) {
             match (column, cell) {
-                (_, Cell::Empty) => {}
-                (Column::Geometry, Cell::Bytes(wkb)) => record.set_shape(from_wkb(&wkb)),
-                (Column::Geometry, _) => record.fault(column, "is no well-known binary; write the file again"),
-                (_, Cell::Text(text)) => record.set(column, &text),
-                (_, Cell::Bytes(bytes)) => match std::str::from_utf8(&bytes) {
+                (_, ParquetCell::Empty) => {}
+                (EvidenceColumn::Geometry, ParquetCell::Bytes(wkb)) => record.set_shape(from_wkb(&wkb)),
+                (EvidenceColumn::Geometry, _) => record.fault(column, "is no well-known binary; write the file again"),
+                (_, ParquetCell::Text(text)) => record.set(column, &text),
+                (_, ParquetCell::Bytes(bytes)) => match std::str::from_utf8(&bytes) {
                     Ok(text) => record.set(column, text),
                     Err(_) => record.fault(column, "is binary; give a text or number"),
                 },
-                (_, Cell::Other) => record.fault(column, "is neither text nor number nor day; convert it"),
+                (_, ParquetCell::Other) => record.fault(column, "is neither text nor number nor day; convert it"),
             }
         }
     }
@@ -87,7 +87,7 @@ fn check_compression(metadata: &ParquetMetaData) -> Result<(), Failure> {
 }
 
 /// The columns with a meaning, by their leaf in the file's schema.
-fn meanings(metadata: &ParquetMetaData) -> Result<Vec<(usize, Column)>, Failure> {
+fn meanings(metadata: &ParquetMetaData) -> Result<Vec<(usize, EvidenceColumn)>, Failure> {
     let schema = metadata.file_metadata().schema_descr();
     let geometry = geometry(metadata)?;
     // Boxes of geometries (GeoParquet 1.1, "bbox covering") and other groups have several leaves.
@@ -105,7 +105,7 @@ fn meanings(metadata: &ParquetMetaData) -> Result<Vec<(usize, Column)>, Failure>
         _ => name,
     });
     let columns = columns(names)?;
-    if geometry.is_none() && columns.contains(&Some(Column::Geometry)) {
+    if geometry.is_none() && columns.contains(&Some(EvidenceColumn::Geometry)) {
         return Err("no GeoParquet: the metadata `geo` is missing, so its reference system is unknown"
             .to_owned()
             .into());

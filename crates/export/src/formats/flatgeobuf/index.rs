@@ -17,18 +17,18 @@ pub(super) const FANOUT: u64 = 16;
 
 /// Bytes of a node in the file: a box and an offset.
 const NODE_BYTES: usize = 40;
-/// Bytes of a [`Located`]: a box, an offset and a length.
+/// Bytes of a [`LocatedFeature`]: a box, an offset and a length.
 const LOCATED_BYTES: usize = 48;
 
 /// A feature's box on earth, and its offset and length in the file of features.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Located {
+pub(super) struct LocatedFeature {
     pub(super) around: Bounds,
     pub(super) place: u64,
     pub(super) bytes: u64,
 }
 
-impl Located {
+impl LocatedFeature {
     pub(super) fn to_bytes(self) -> [u8; LOCATED_BYTES] {
         let Bounds { west, south, east, north } = self.around;
         words([west.to_bits(), south.to_bits(), east.to_bits(), north.to_bits(), self.place, self.bytes])
@@ -104,8 +104,8 @@ impl Index {
     }
 
     /// The features in the order of the file.
-    pub(super) fn in_order(&mut self) -> io::Result<impl Iterator<Item = io::Result<Located>> + '_> {
-        Ok(records::<LOCATED_BYTES>(&mut self.ordered, self.features).map(|bytes| Ok(Located::of(&bytes?))))
+    pub(super) fn in_order(&mut self) -> io::Result<impl Iterator<Item = io::Result<LocatedFeature>> + '_> {
+        Ok(records::<LOCATED_BYTES>(&mut self.ordered, self.features).map(|bytes| Ok(LocatedFeature::of(&bytes?))))
     }
 }
 
@@ -127,10 +127,10 @@ fn sort(
     located: &mut Scratch,
     features: u64,
     bounds: Bounds,
-    mut sorter: Sorter<(u32, u64), Located>,
-) -> io::Result<Sorted<(u32, u64), Located>> {
+    mut sorter: Sorter<(u32, u64), LocatedFeature>,
+) -> io::Result<Sorted<(u32, u64), LocatedFeature>> {
     for (number, bytes) in (0_u64..).zip(records::<LOCATED_BYTES>(located, features)) {
-        let found = Located::of(&bytes?);
+        let found = LocatedFeature::of(&bytes?);
         sorter.push((along_curve(found.around, bounds), number), &found)?;
     }
     sorter.sorted()
@@ -146,7 +146,7 @@ fn raise(level: &mut Scratch, nodes: u64, first_child: u64, parents: &mut Scratc
         around = Some(all);
         let last = number + 1 == nodes;
         if last || (number + 1).is_multiple_of(FANOUT) {
-            let node = Located { around: all, place: 0, bytes: 0 };
+            let node = LocatedFeature { around: all, place: 0, bytes: 0 };
             parents.write_all(&node.node(first_child + number / FANOUT * FANOUT))?;
             around = None;
         }

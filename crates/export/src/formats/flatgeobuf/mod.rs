@@ -16,10 +16,10 @@ use flatgeobuf::{
 use super::layer_files::{LayerFormat, Table};
 use super::layers::Row;
 use crate::rows::Bounds;
-use crate::rows::{Cell, Kind};
+use crate::rows::{Cell, ColumnKind};
 use crate::scratch::Scratch;
 use crate::{ExportError, Sink};
-use index::{Index, Located};
+use index::{Index, LocatedFeature};
 
 /// The first bytes of a file: `fgb`, version 3, `fgb`, patch 0.
 const MAGIC: [u8; 8] = *b"fgb\x03fgb\x00";
@@ -52,7 +52,7 @@ impl LayerFormat for FlatGeobuf {
         let Some(around) = Bounds::around(row.line.iter().copied()) else { return Ok(()) };
         let bytes = feature(&mut self.builder, row);
         self.features.write_all(bytes)?;
-        let located = Located { around, place: self.end, bytes: bytes.len() as u64 };
+        let located = LocatedFeature { around, place: self.end, bytes: bytes.len() as u64 };
         self.located.write_all(&located.to_bytes())?;
         self.count += 1;
         self.end += located.bytes;
@@ -83,12 +83,12 @@ impl LayerFormat for FlatGeobuf {
     }
 }
 
-fn column_type(kind: Kind) -> ColumnType {
+fn column_type(kind: ColumnKind) -> ColumnType {
     match kind {
-        Kind::Integer => ColumnType::Long,
-        Kind::Real => ColumnType::Double,
-        Kind::Text => ColumnType::String,
-        Kind::Flag => ColumnType::Bool,
+        ColumnKind::Integer => ColumnType::Long,
+        ColumnKind::Real => ColumnType::Double,
+        ColumnKind::Text => ColumnType::String,
+        ColumnKind::Flag => ColumnType::Bool,
     }
 }
 
@@ -99,7 +99,7 @@ fn header(table: &Table<'_>, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
     let mut columns = Vec::new();
     for &(name, kind) in &table.columns {
         let name = builder.create_string(name);
-        let nullable = kind != Kind::Flag;
+        let nullable = kind != ColumnKind::Flag;
         let column = ColumnArgs { name: Some(name), type_: column_type(kind), nullable, ..ColumnArgs::default() };
         columns.push(Column::create(&mut builder, &column));
     }

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::SIDES;
 use crate::rows::Bounds;
-use crate::rows::{Column, Kind};
+use crate::rows::{Column, ColumnKind};
 
 /// The member `geo` of <https://geoparquet.org/releases/v1.1.0/>: lines in the column `geometry`, their boxes in `bbox`.
 pub(super) fn geo(bounds: Option<Bounds>) -> String {
@@ -50,10 +50,10 @@ fn epsg_4326() -> Value {
 pub(super) fn pandas(columns: &[Column]) -> String {
     let plain = columns.iter().map(|&(name, kind)| {
         let (pandas, numpy) = match kind {
-            Kind::Integer => ("int64", "Int64"),
-            Kind::Real => ("float64", "float64"),
-            Kind::Text => ("unicode", "object"),
-            Kind::Flag => ("bool", "bool"),
+            ColumnKind::Integer => ("int64", "Int64"),
+            ColumnKind::Real => ("float64", "float64"),
+            ColumnKind::Text => ("unicode", "object"),
+            ColumnKind::Flag => ("bool", "bool"),
         };
         (name, pandas, numpy)
     });

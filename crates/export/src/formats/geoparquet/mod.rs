@@ -19,7 +19,7 @@ use parquet::schema::types::Type;
 use super::layer_files::{LayerFormat, Table};
 use super::layers::Row;
 use crate::osm::LonLat;
-use crate::rows::{self, Bounds, Cell, Kind};
+use crate::rows::{self, Bounds, Cell, ColumnKind};
 use crate::{ExportError, Sink};
 
 /// Rows per group. A group of edges takes some 8 MB.
@@ -122,12 +122,12 @@ enum Column {
 }
 
 impl Column {
-    fn of(kind: Kind) -> Self {
+    fn of(kind: ColumnKind) -> Self {
         match kind {
-            Kind::Integer => Self::Integer(Vec::new(), Vec::new()),
-            Kind::Real => Self::Real(Vec::new(), Vec::new()),
-            Kind::Text => Self::Text(Vec::new(), Vec::new()),
-            Kind::Flag => Self::Flag(Vec::new()),
+            ColumnKind::Integer => Self::Integer(Vec::new(), Vec::new()),
+            ColumnKind::Real => Self::Real(Vec::new(), Vec::new()),
+            ColumnKind::Text => Self::Text(Vec::new(), Vec::new()),
+            ColumnKind::Flag => Self::Flag(Vec::new()),
         }
     }
 
@@ -187,10 +187,10 @@ fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
     let mut fields = Vec::new();
     for &(column_name, kind) in columns {
         let (physical, repetition, logical) = match kind {
-            Kind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
-            Kind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
-            Kind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
-            Kind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
+            ColumnKind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
+            ColumnKind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
+            ColumnKind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
+            ColumnKind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
         };
         fields.push(column(column_name, physical, repetition, logical)?);
     }

@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use osmpbfreader::osmformat::Relation;
 
 use super::block::{Spool, Texts};
-use super::relations::{Kind, Member, Refused, refusal_word, refused, set_members};
+use super::relations::{Kind, RefusedTurn, RelationMember, refusal_word, refused, set_members};
 use super::split::Cuts;
 use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
@@ -48,7 +48,7 @@ pub(super) struct Refusals<'s, 'r> {
     /// The ends at which turning back is refused. They are in a file, because there are as many as edges.
     dead_ends: Scratch,
     /// What the extract refuses already, by key.
-    said: FxHashSet<(&'static str, Refused)>,
+    said: FxHashSet<(&'static str, RefusedTurn)>,
     relations: Spool,
     next_id: i64,
 }
@@ -113,7 +113,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
     pub(super) fn one_of_several(
         &mut self,
         restriction: &Relation,
-        turn: &[Member],
+        turn: &[RelationMember],
         texts: &mut Texts,
     ) -> Result<(), ExportError> {
         let mut one = restriction.clone();
@@ -235,8 +235,8 @@ impl<'s, 'r> Refusals<'s, 'r> {
     }
 
     /// Adds a relation, unless the extract has the same refusal.
-    fn relation(&mut self, members: &[Member], key: &'static str, word: &str) -> Result<(), ExportError> {
-        if Refused::by(members.iter().copied()).is_some_and(|refused| self.said.contains(&(key, refused))) {
+    fn relation(&mut self, members: &[RelationMember], key: &'static str, word: &str) -> Result<(), ExportError> {
+        if RefusedTurn::by(members.iter().copied()).is_some_and(|refused| self.said.contains(&(key, refused))) {
             return Ok(());
         }
         let id = self.next_id;
@@ -245,7 +245,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
     }
 }
 
-fn over(from: i64, via: i64, to: i64) -> [Member; 3] {
+fn over(from: i64, via: i64, to: i64) -> [RelationMember; 3] {
     [(Kind::WAY, from, "from"), (Kind::NODE, via, "via"), (Kind::WAY, to, "to")]
 }
 

@@ -16,11 +16,11 @@ pub(super) struct PartEnds {
 }
 
 /// The parts of each split way, in way order.
-pub(super) type Splits = FxHashMap<i64, Vec<PartEnds>>;
+pub(super) type WaySplits = FxHashMap<i64, Vec<PartEnds>>;
 
 /// Replaces split ways by their parts. Returns whether there were any. A restriction of which two parts of one way meet the `via` says
 /// no longer which one it means. Its refusals are written anew, so it is no restriction any more.
-pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut Texts) -> bool {
+pub(super) fn name_parts(relation: &mut Relation, splits: &WaySplits, texts: &mut Texts) -> bool {
     let ids = ids(&relation.memids);
     let kinds: Vec<Kind> = relation.types.iter().map(EnumOrUnknown::enum_value_or_default).collect();
     if !ids.iter().zip(&kinds).any(|(id, kind)| *kind == Kind::WAY && splits.contains_key(id)) {
@@ -71,10 +71,10 @@ pub(super) fn set_aside(relation: &mut Relation, texts: &mut Texts) {
 }
 
 /// A member: its kind, id and role.
-pub(super) type Member = (Kind, i64, &'static str);
+pub(super) type RelationMember = (Kind, i64, &'static str);
 
 /// Gives a relation these members.
-pub(super) fn set_members(relation: &mut Relation, members: &[Member], texts: &mut Texts) {
+pub(super) fn set_members(relation: &mut Relation, members: &[RelationMember], texts: &mut Texts) {
     (relation.types, relation.memids, relation.roles_sid) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = 0_i64;
     for &(kind, id, role) in members {
@@ -88,11 +88,11 @@ pub(super) fn set_members(relation: &mut Relation, members: &[Member], texts: &m
 /// What a restriction says of turns, one by one. Of several members Valhalla 3.9.1 takes one pair, and OSRM 26.10 drops some restrictions
 /// whole (`findings/restriction-of-several-roads.sh`).
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Turns {
+pub(super) enum RelationTurns {
     /// It has one of each, or is no restriction.
     AsItIs,
     /// Members of one restriction for each turn.
-    Each(Vec<Vec<Member>>),
+    Each(Vec<Vec<RelationMember>>),
     /// `only_…` into several roads, or too many turns: no relation says that.
     NotToBeSaid,
 }
@@ -101,9 +101,9 @@ pub(super) enum Turns {
 const MOST_TURNS: usize = 1000;
 
 /// The turns of a restriction. Each `from` is meant with each `to`, over each node, as ingest reads it.
-pub(super) fn turns_of(relation: &Relation, texts: &Texts) -> Turns {
+pub(super) fn turns_of(relation: &Relation, texts: &Texts) -> RelationTurns {
     if !value(relation, texts, "type").is_some_and(|kind| kind.starts_with(b"restriction")) {
-        return Turns::AsItIs;
+        return RelationTurns::AsItIs;
     }
     let kinds = relation.types.iter().map(EnumOrUnknown::enum_value_or_default);
     let (mut from, mut to, mut nodes, mut ways) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -116,7 +116,7 @@ pub(super) fn turns_of(relation: &Relation, texts: &Texts) -> Turns {
             _ => {}
         }
     }
-    let vias: Vec<Vec<Member>> = match nodes.len() {
+    let vias: Vec<Vec<RelationMember>> = match nodes.len() {
         // Ways are driven one after the other.
         0 => vec![ways],
         _ if !ways.is_empty() => vec![[nodes, ways].concat()],
@@ -124,16 +124,18 @@ pub(super) fn turns_of(relation: &Relation, texts: &Texts) -> Turns {
     };
     let turns = from.len() * to.len() * vias.len();
     if turns < 2 {
-        return Turns::AsItIs;
+        return RelationTurns::AsItIs;
     }
     let only = relation.keys.iter().zip(&relation.vals).any(|(&key, &value)| {
         texts.text(key).starts_with(b"restriction") && texts.text(value).trim_ascii_start().starts_with(b"only_")
     });
     if only && to.len() > 1 || turns > MOST_TURNS {
-        return Turns::NotToBeSaid;
+        return RelationTurns::NotToBeSaid;
     }
-    let of_pair = |from: Member, to: Member| vias.iter().map(move |via| [&[from], via.as_slice(), &[to]].concat());
-    Turns::Each(from.iter().flat_map(|&from| to.iter().flat_map(move |&to| of_pair(from, to))).collect())
+    let of_pair = |from: RelationMember, to: RelationMember| {
+        vias.iter().map(move |via| [&[from], via.as_slice(), &[to]].concat())
+    };
+    RelationTurns::Each(from.iter().flat_map(|&from| to.iter().flat_map(move |&to| of_pair(from, to))).collect())
 }
 
 fn value<'t>(relation: &Relation, texts: &'t Texts, key: &str) -> Option<&'t [u8]> {
@@ -147,13 +149,13 @@ fn roles(relation: &Relation, texts: &Texts) -> Vec<String> {
 
 /// A refusal of a relation: from a way, over a node or over ways, into a way.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct Refused {
+pub(super) struct RefusedTurn {
     over_ways: bool,
     /// The ids of the members in driving order.
     ids: Vec<i64>,
 }
 
-impl Refused {
+impl RefusedTurn {
     /// The refusal by members with these roles. `None` unless there is one `from` and one `to`.
     pub(super) fn by<'m>(members: impl Iterator<Item = (Kind, i64, &'m str)>) -> Option<Self> {
         let (mut from, mut via, mut to, mut over_ways) = (Vec::new(), Vec::new(), Vec::new(), false);
@@ -177,7 +179,7 @@ impl Refused {
 const BUT: [&str; 5] = ["except", "day_on", "day_off", "hour_on", "hour_off"];
 
 /// What a relation refuses under this key, always and without exception. `None` if it does not.
-pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<Refused> {
+pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<RefusedTurn> {
     let restriction = value(relation, texts, "type") == Some(b"restriction");
     let refuses = value(relation, texts, key).is_some_and(|word| word.starts_with(b"no_"));
     if !restriction || !refuses || BUT.iter().any(|key| value(relation, texts, key).is_some()) {
@@ -185,11 +187,11 @@ pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<R
     }
     let (ids, roles) = (ids(&relation.memids), roles(relation, texts));
     let kinds = relation.types.iter().map(EnumOrUnknown::enum_value_or_default);
-    Refused::by(kinds.zip(ids).zip(&roles).map(|((kind, id), role)| (kind, id, role.as_str())))
+    RefusedTurn::by(kinds.zip(ids).zip(&roles).map(|((kind, id), role)| (kind, id, role.as_str())))
 }
 
 /// The nodes of a `via`: the node itself, or the ends of the way, which are known only if the way was split.
-fn via_nodes(id: i64, kind: Option<Kind>, splits: &Splits) -> Vec<i64> {
+fn via_nodes(id: i64, kind: Option<Kind>, splits: &WaySplits) -> Vec<i64> {
     match kind {
         Some(Kind::NODE) => vec![id],
         Some(Kind::WAY) => splits.get(&id).map_or_else(Vec::new, |parts| {
@@ -239,7 +241,7 @@ mod tests {
     fn a_restriction_names_the_part_at_its_node_and_a_route_all_parts() {
         let mut texts = Texts::over(vec![Vec::new()]);
         let part = |id, ends| PartEnds { id, ends };
-        let splits = Splits::from_iter([(5, vec![part(5, [1, 2]), part(105, [2, 3]), part(106, [3, 4])])]);
+        let splits = WaySplits::from_iter([(5, vec![part(5, [1, 2]), part(105, [2, 3]), part(106, [3, 4])])]);
         let mut ban = relation(&[(Kind::WAY, 5, "from"), (Kind::NODE, 4, "via"), (Kind::WAY, 9, "to")], &mut texts);
         ban.keys.push(texts.number(b"type"));
         ban.vals.push(texts.number(b"restriction"));
@@ -261,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_restriction_of_several_members_is_one_for_each_pair() {
-        let turns = |members: &[Member], word: &str| {
+        let turns = |members: &[RelationMember], word: &str| {
             let mut texts = Texts::over(vec![Vec::new()]);
             let mut relation = relation(members, &mut texts);
             for (key, value) in [("type", "restriction"), ("restriction", word)] {
@@ -273,19 +275,23 @@ mod tests {
         let (a, b) = ((Kind::WAY, 1, "from"), (Kind::WAY, 2, "from"));
         let (c, d) = ((Kind::WAY, 3, "to"), (Kind::WAY, 4, "to"));
         let via = (Kind::NODE, 9, "via");
-        assert_eq!(turns(&[a, b, via, c], "no_entry"), Turns::Each(vec![vec![a, via, c], vec![b, via, c]]));
-        assert_eq!(turns(&[a, via, c, d], "no_exit"), Turns::Each(vec![vec![a, via, c], vec![a, via, d]]));
+        assert_eq!(turns(&[a, b, via, c], "no_entry"), RelationTurns::Each(vec![vec![a, via, c], vec![b, via, c]]));
+        assert_eq!(turns(&[a, via, c, d], "no_exit"), RelationTurns::Each(vec![vec![a, via, c], vec![a, via, d]]));
         let all = [[a, c], [a, d], [b, c], [b, d]].map(|[from, to]| vec![from, via, to]);
-        assert_eq!(turns(&[a, b, via, c, d], "no_exit"), Turns::Each(all.to_vec()));
+        assert_eq!(turns(&[a, b, via, c, d], "no_exit"), RelationTurns::Each(all.to_vec()));
         let ways = [(Kind::WAY, 7, "via"), (Kind::WAY, 8, "via")];
-        let over = |from: Member| vec![from, ways[0], ways[1], c];
-        assert_eq!(turns(&[a, b, ways[0], ways[1], c], "no_entry"), Turns::Each(vec![over(a), over(b)]));
-        assert_eq!(turns(&[a, b, via, c], "only_straight_on"), Turns::Each(vec![vec![a, via, c], vec![b, via, c]]));
-        assert_eq!(turns(&[a, via, c, d], "only_straight_on"), Turns::NotToBeSaid);
-        assert_eq!(turns(&[a, via, c], "no_left_turn"), Turns::AsItIs);
-        assert_eq!(turns(&[a, b, via], "no_entry"), Turns::AsItIs);
-        let many: Vec<Member> = (0..40).flat_map(|id| [(Kind::WAY, id, "from"), (Kind::WAY, id, "to")]).collect();
-        assert_eq!(turns(&many, "no_exit"), Turns::NotToBeSaid);
+        let over = |from: RelationMember| vec![from, ways[0], ways[1], c];
+        assert_eq!(turns(&[a, b, ways[0], ways[1], c], "no_entry"), RelationTurns::Each(vec![over(a), over(b)]));
+        assert_eq!(
+            turns(&[a, b, via, c], "only_straight_on"),
+            RelationTurns::Each(vec![vec![a, via, c], vec![b, via, c]])
+        );
+        assert_eq!(turns(&[a, via, c, d], "only_straight_on"), RelationTurns::NotToBeSaid);
+        assert_eq!(turns(&[a, via, c], "no_left_turn"), RelationTurns::AsItIs);
+        assert_eq!(turns(&[a, b, via], "no_entry"), RelationTurns::AsItIs);
+        let many: Vec<RelationMember> =
+            (0..40).flat_map(|id| [(Kind::WAY, id, "from"), (Kind::WAY, id, "to")]).collect();
+        assert_eq!(turns(&many, "no_exit"), RelationTurns::NotToBeSaid);
     }
 
     #[test]
@@ -301,7 +307,7 @@ mod tests {
             refused(&relation, &texts, key)
         };
         let plain = [("type", "restriction"), ("restriction", "no_left_turn")];
-        let ours = |members: &[(Kind, i64, &'static str)]| Refused::by(members.iter().copied());
+        let ours = |members: &[(Kind, i64, &'static str)]| RefusedTurn::by(members.iter().copied());
         assert_eq!(read(&members, &plain, "restriction"), ours(&members));
         assert_eq!(read(&members, &plain, "restriction:hgv"), None);
         assert_eq!(read(&members, &[plain[0], plain[1], ("except", "hgv")], "restriction"), None);

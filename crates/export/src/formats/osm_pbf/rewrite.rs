@@ -7,9 +7,9 @@ use protobuf::Message as _;
 use super::block::{Spool, Texts, write_blob, write_block};
 use super::limits::{NodeLimits, with_limits};
 use super::refusals::{End, Refusals};
-use super::relations::{PartEnds, Splits, Turns, name_parts, set_aside, set_members, turns_of};
+use super::relations::{PartEnds, RelationTurns, WaySplits, name_parts, set_aside, set_members, turns_of};
 use super::split::{WayPart, parts};
-use super::tags::{Said, Tag, with_permits};
+use super::tags::{StretchPermits, Tag, with_permits};
 use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
@@ -32,7 +32,7 @@ pub(in crate::formats) fn rewrite(
         flavour,
         refusals: Refusals::create(source, flavour, destination)?,
         limits: NodeLimits::default(),
-        splits: Splits::default(),
+        splits: WaySplits::default(),
         new_ways: Spool::new(destination.scratch(".ways")?),
         next_id: FIRST_NEW_ID,
         unclear: 0,
@@ -62,7 +62,7 @@ struct Rewriter<'s, 'r> {
     flavour: Flavour,
     refusals: Refusals<'s, 'r>,
     limits: NodeLimits,
-    splits: Splits,
+    splits: WaySplits,
     new_ways: Spool,
     /// Id of the next new way.
     next_id: i64,
@@ -158,12 +158,12 @@ impl Rewriter<'_, '_> {
             .map_err(|detail| self.source.extract_error(detail))?;
         let mut changed = name_parts(relation, &self.splits, texts);
         match turns_of(relation, texts) {
-            Turns::AsItIs => {}
-            Turns::NotToBeSaid => {
+            RelationTurns::AsItIs => {}
+            RelationTurns::NotToBeSaid => {
                 set_aside(relation, texts);
                 changed = true;
             }
-            Turns::Each(turns) => {
+            RelationTurns::Each(turns) => {
                 let mut turns = turns.iter();
                 let first = turns.next();
                 for turn in turns {
@@ -185,7 +185,7 @@ impl Rewriter<'_, '_> {
         }
         let refs = ids(&way.refs);
         check_ids("way", way.id(), &refs).map_err(|detail| self.source.extract_error(detail))?;
-        let whole = || vec![WayPart { first: 0, last: refs.len().saturating_sub(1), said: Said::default() }];
+        let whole = || vec![WayPart { first: 0, last: refs.len().saturating_sub(1), said: StretchPermits::default() }];
         let (stretches, parts) = match edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))? {
             OnWay::Nothing if !way.keys.iter().any(|&key| KEYS.contains(&texts.text(key))) => return Ok(false),
             OnWay::Nothing => (Vec::new(), whole()),

@@ -1,6 +1,6 @@
 //! Splits ways where the permits change, and at the ends of edges that a relation names.
 
-use super::tags::Said;
+use super::tags::StretchPermits;
 use crate::permit::{Bits, Permitted};
 use crate::rows::EdgeNo;
 use crate::ways::WayStretch;
@@ -10,7 +10,7 @@ use crate::ways::WayStretch;
 pub(super) struct WayPart {
     pub(super) first: usize,
     pub(super) last: usize,
-    pub(super) said: Said,
+    pub(super) said: StretchPermits,
 }
 
 /// Edges at whose ends a way must end: those of refused turns.
@@ -71,9 +71,9 @@ pub(super) fn parts(
     let mut done = 0;
     for stretch in stretches {
         // Between stretches the extract lacks nodes, so nothing is permitted there.
-        add(WayPart { first: done, last: stretch.first, said: Said::default() }, [false; 2]);
+        add(WayPart { first: done, last: stretch.first, said: StretchPermits::default() }, [false; 2]);
         let yes = stretch.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge.index())));
-        let said = Said { permitted: yes, rsc_m: stretch.rsc_m };
+        let said = StretchPermits { permitted: yes, rsc_m: stretch.rsc_m };
         let on_stretch = refs.get(stretch.first..=stretch.last).unwrap_or_default();
         let cut = if limited(on_stretch) { [true; 2] } else { cuts.of(stretch, yes) };
         match middle_of_loop(stretch, refs).filter(|_| cut != [false; 2]) {
@@ -86,7 +86,7 @@ pub(super) fn parts(
         }
         done = stretch.last;
     }
-    add(WayPart { first: done, last: refs.len().saturating_sub(1), said: Said::default() }, [false; 2]);
+    add(WayPart { first: done, last: refs.len().saturating_sub(1), said: StretchPermits::default() }, [false; 2]);
     out
 }
 

@@ -21,7 +21,7 @@ pub(super) type Tag = (Vec<u8>, Vec<u8>);
 
 /// The permits of a stretch of road: whether it is permitted, and the least RSC, along the way and against it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Said {
+pub(super) struct StretchPermits {
     pub(super) permitted: [bool; 2],
     pub(super) rsc_m: [Option<f64>; 2],
 }
@@ -29,7 +29,7 @@ pub(super) struct Said {
 const DIRECTIONS: [&str; 2] = ["forward", "backward"];
 
 /// The tags of a stretch: `tags` with its permits.
-pub(super) fn with_permits(tags: &[Tag], said: Said, flavour: Flavour) -> Vec<Tag> {
+pub(super) fn with_permits(tags: &[Tag], said: StretchPermits, flavour: Flavour) -> Vec<Tag> {
     let mut out: Vec<Tag> = Vec::with_capacity(tags.len() + 6);
     for (key, value) in tags {
         if key.starts_with(b"netcert") {
@@ -97,7 +97,7 @@ mod tests {
     }
 
     fn said(before: &str, permitted: [bool; 2], flavour: Flavour) -> String {
-        let said = Said { permitted, rsc_m: permitted.map(|yes| yes.then_some(0.25)) };
+        let said = StretchPermits { permitted, rsc_m: permitted.map(|yes| yes.then_some(0.25)) };
         let after = with_permits(&tags(before), said, flavour);
         let text = |text: &Vec<u8>| String::from_utf8_lossy(text).into_owned();
         after.iter().map(|(key, value)| format!("{}={}", text(key), text(value))).collect::<Vec<_>>().join(" ")

@@ -26,7 +26,7 @@ use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use crate::{Destination, ExportError, Layout, Sink, Source};
 use locations::{EdgeLocation, EdgeLocations};
-use segment::Segment;
+use segment::ExtractSegment;
 use stretch::SegmentStretch;
 
 /// `overture`
@@ -51,7 +51,7 @@ impl Target for Overture {
         let mut connectors = Sorter::new(destination.scratch(".connectors")?);
         let mut sink = begin(source, destination.create("segment.geojson")?)?;
         let mut writer = Writer {
-            scope: segment::Scope { length_m: length_m(source)? },
+            scope: segment::VehicleScope { length_m: length_m(source)? },
             locations: &mut locations,
             transitions: &mut transitions,
             connectors: &mut connectors,
@@ -153,7 +153,7 @@ impl Transitions {
 }
 
 struct Writer<'w, 'r> {
-    scope: segment::Scope,
+    scope: segment::VehicleScope,
     locations: &'w mut EdgeLocations,
     transitions: &'w mut Transitions,
     connectors: &'w mut Sorter<NodeId, LonLat>,
@@ -166,7 +166,7 @@ impl Writer<'_, '_> {
     fn segments(&mut self) -> Result<(), ExportError> {
         let source = self.source;
         let mut database = source.database()?;
-        let mut open: Option<Segment> = None;
+        let mut open: Option<ExtractSegment> = None;
         for edge in source.edges(&mut database)? {
             let edge = edge?;
             let location = self.locations.get(edge.row.edge.index)?;
@@ -174,7 +174,7 @@ impl Writer<'_, '_> {
             if !same && let Some(done) = open.take() {
                 self.write(&done)?;
             }
-            let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &location));
+            let segment = open.get_or_insert_with(|| ExtractSegment::new(&edge.row, &location));
             if segment.stretches.last().is_none_or(|stretch| stretch.shape_start != location.shape_start) {
                 segment.stretches.push(SegmentStretch::new(&edge.row, &location));
             }
@@ -207,7 +207,7 @@ impl Writer<'_, '_> {
         Ok(out)
     }
 
-    fn write(&mut self, segment: &Segment) -> Result<(), ExportError> {
+    fn write(&mut self, segment: &ExtractSegment) -> Result<(), ExportError> {
         for (node, at) in segment.nodes() {
             self.connectors.push(node, &at)?;
         }

@@ -15,12 +15,12 @@ use crate::rows::{EdgeRow, RoadName};
 use crate::words::Named as _;
 
 /// The vehicles that the rules apply to.
-pub(super) struct Scope {
+pub(super) struct VehicleScope {
     pub(super) length_m: f64,
 }
 
 /// A way, or a part of it without a gap in the extract.
-pub(super) struct Segment {
+pub(super) struct ExtractSegment {
     pub(super) way_id: i64,
     pub(super) chain: u32,
     road: RoadName,
@@ -37,7 +37,7 @@ pub(super) fn connector_id(node: NodeId) -> String {
     format!("n{node}")
 }
 
-impl Segment {
+impl ExtractSegment {
     /// A segment without stretches.
     pub(super) fn new(row: &EdgeRow, location: &EdgeLocation) -> Self {
         let EdgeLocation { way_id, chain, .. } = *location;
@@ -53,7 +53,7 @@ impl Segment {
     }
 
     /// The segment as a GeoJSON feature.
-    pub(super) fn feature(&self, scope: &Scope) -> Value {
+    pub(super) fn feature(&self, scope: &VehicleScope) -> Value {
         let at = self.at();
         let (class, link) = values::class(&self.road.highway);
         let mut properties = json!({
@@ -131,7 +131,7 @@ impl Segment {
     }
 
     /// The rules for directions that do not exist, and for stretches that may not be used. Neighbouring stretches share a rule, and a rule for both headings names none.
-    fn denials(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
+    fn denials(&self, at: &[f64], scope: &VehicleScope) -> Vec<Value> {
         let denied = |heading: usize| -> Vec<[usize; 2]> {
             let mut ranges: Vec<[usize; 2]> = Vec::new();
             let refused = |stretch: &SegmentStretch| {
@@ -166,7 +166,7 @@ impl Segment {
     }
 
     /// The prohibited transitions of each stretch, including turning back on the road.
-    fn transitions(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
+    fn transitions(&self, at: &[f64], scope: &VehicleScope) -> Vec<Value> {
         let mut rules = Vec::new();
         for (i, stretch) in self.stretches.iter().enumerate() {
             for heading in [Direction::Forward, Direction::Backward] {
@@ -193,7 +193,7 @@ impl Segment {
     }
 }
 
-impl Scope {
+impl VehicleScope {
     /// The condition of a rule: lorries at least as long as the vehicle.
     fn when(&self, heading: Option<Direction>) -> Value {
         let mut when = Map::new();
@@ -232,13 +232,13 @@ mod tests {
     }
 
     fn segment(stretches: Vec<SegmentStretch>) -> Value {
-        let segment = Segment {
+        let segment = ExtractSegment {
             way_id: 7,
             chain: 0,
             road: RoadName { highway: "primary_link".to_owned(), name: None, reference: None },
             stretches,
         };
-        segment.feature(&Scope { length_m: 16.5 })["properties"].clone()
+        segment.feature(&VehicleScope { length_m: 16.5 })["properties"].clone()
     }
 
     #[test]

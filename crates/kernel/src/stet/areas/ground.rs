@@ -1,13 +1,13 @@
 //! The room that an area leaves: distances to its boundary, found through a grid of cells.
 
-use netcert_base::corridor::Area;
-use netcert_base::counted::{WorkKind, count};
+use netcert_base::corridor::PlaneArea;
 use netcert_base::watch;
+use netcert_base::work_count::{WorkKind, count};
 
 /// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
 pub(in crate::stet) const FAR_OUTSIDE_M: f64 = -300.0;
 /// A place in the plane, metres.
-pub(in crate::stet) type Point = [f64; 2];
+pub(in crate::stet) type PlanePoint = [f64; 2];
 
 /// Side of a cell, metres.
 const CELL_M: f64 = 3.0;
@@ -15,7 +15,7 @@ const CELL_M: f64 = 3.0;
 const HALF_CELL_M: f64 = 0.5 * CELL_M * std::f64::consts::SQRT_2 + 1e-6;
 /// The grid begins this much before the boundary and [`FAR_M`]. These are no round numbers, so a cell's corner hardly ever lies on a
 /// boundary drawn in round numbers.
-const ORIGIN_M: Point = [0.137_421, 0.211_973];
+const ORIGIN_M: PlanePoint = [0.137_421, 0.211_973];
 /// Distances up to this are exact, metres. Beyond it a place just has at least this much room.
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
@@ -41,11 +41,11 @@ struct Cell {
 /// A piece of a side over a step.
 pub(in crate::stet) struct SweptPiece<'a> {
     /// Its ends at both stations.
-    pub(in crate::stet) before: [Point; 2],
-    pub(in crate::stet) after: [Point; 2],
+    pub(in crate::stet) before: [PlanePoint; 2],
+    pub(in crate::stet) after: [PlanePoint; 2],
     /// Most that its places may move in any direction, and both ends in a given one, metres. Between the ends it is convex.
     pub(in crate::stet) most: f64,
-    pub(in crate::stet) stray: &'a dyn Fn(Point) -> [f64; 2],
+    pub(in crate::stet) stray: &'a dyn Fn(PlanePoint) -> [f64; 2],
     /// A leeway of at least this much need not be exact.
     pub(in crate::stet) enough: f64,
     /// Whether it is known to be inside at the first station.
@@ -55,9 +55,9 @@ pub(in crate::stet) struct SweptPiece<'a> {
 impl SweptPiece<'_> {
     /// The piece at both stations, prolonged by what it slides along itself: what is left is its way across, and the difference
     /// of its two directions, metres.
-    fn unslid(&self) -> ([Point; 2], [Point; 2], f64) {
+    fn unslid(&self) -> ([PlanePoint; 2], [PlanePoint; 2], f64) {
         let (mut before, mut after) = (self.before, self.after);
-        let unit = |piece: [Point; 2]| {
+        let unit = |piece: [PlanePoint; 2]| {
             let length = apart(piece[0], piece[1]).max(TOUCHING_M);
             [0, 1].map(|k| (piece[0][k] - piece[1][k]) / length)
         };
@@ -74,12 +74,12 @@ impl SweptPiece<'_> {
 
     /// Most that the piece may come closer to what is `gap` away from it, in metres and direction. An end that is farther back may
     /// move more.
-    fn stray_towards(&self, gap: Point, far: f64) -> f64 {
+    fn stray_towards(&self, gap: PlanePoint, far: f64) -> f64 {
         if far < TOUCHING_M {
             return self.most;
         }
         let towards = [gap[0] / far, gap[1] / far];
-        let reached = |p: Point| towards[0] * p[0] + towards[1] * p[1];
+        let reached = |p: PlanePoint| towards[0] * p[0] + towards[1] * p[1];
         let ends = [0, 1].map(|end| reached(self.before[end]).max(reached(self.after[end])));
         let stray = (self.stray)(towards);
         let most = ends[0].max(ends[1]);
@@ -96,13 +96,13 @@ struct Near {
 }
 
 /// An area's boundary, with the segments near each cell of a grid.
-pub(crate) struct Ground {
-    origin: Point,
+pub(crate) struct AreaGrid {
+    origin: PlanePoint,
     columns: usize,
     rows: usize,
     segments: Vec<Segment>,
     /// Corners of boxes around every [`BUNDLE`] segments.
-    bundles: Vec<[Point; 2]>,
+    bundles: Vec<[PlanePoint; 2]>,
     /// Segments within [`FAR_M`] of each cell, the nearest to its middle first: `near[starts[cell]..starts[cell + 1]]`.
     starts: Vec<u32>,
     near: Vec<Near>,
@@ -110,9 +110,9 @@ pub(crate) struct Ground {
     inside: Vec<bool>,
 }
 
-impl Ground {
+impl AreaGrid {
     /// `None` if the boundary has no segment, is not finite, or is too large for a grid. Nothing is inside then.
-    pub(in crate::stet) fn new(area: &Area) -> Option<Self> {
+    pub(in crate::stet) fn new(area: &PlaneArea) -> Option<Self> {
         let segments: Vec<Segment> = area.segments().map(Segment::new).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in segments.iter().map(|segment| segment.a) {
@@ -202,12 +202,12 @@ impl Ground {
         }
     }
 
-    fn corner(&self, column: usize, row: usize) -> Point {
+    fn corner(&self, column: usize, row: usize) -> PlanePoint {
         [self.origin[0] + column as f64 * CELL_M, self.origin[1] + row as f64 * CELL_M]
     }
 
     /// The cell of a place. `None` outside the grid, which is outside the area.
-    fn cell(&self, p: Point) -> Option<Cell> {
+    fn cell(&self, p: PlanePoint) -> Option<Cell> {
         let [x, y] = [0, 1].map(|k| (p[k] - self.origin[k]) / CELL_M);
         let on = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
         on.then_some(Cell { column: x as usize, row: y as usize })
@@ -219,7 +219,7 @@ impl Ground {
     }
 
     /// Square of the distance of a place from the boundary, at most the square of [`FAR_M`]; and the nearest segment, if it is so near.
-    fn nearest(&self, near: &[Near], p: Point) -> (f64, Option<u32>) {
+    fn nearest(&self, near: &[Near], p: PlanePoint) -> (f64, Option<u32>) {
         let mut nearest = (FAR_M * FAR_M, None);
         let mut nearest_m = FAR_M;
         for &Near { segment, middle_m } in near {
@@ -238,7 +238,7 @@ impl Ground {
 
     /// Whether a place lies inside: as its cell's corner, unless the boundary is crossed an odd number of times on the way
     /// there, along the row and then along the column.
-    fn contains(&self, p: Point) -> bool {
+    fn contains(&self, p: PlanePoint) -> bool {
         let Some(cell) = self.cell(p) else { return false };
         let corner = self.corner(cell.column, cell.row);
         let mut inside = self.inside[cell.row * self.columns + cell.column];
@@ -258,12 +258,12 @@ impl Ground {
     }
 
     /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
-    pub(in crate::stet) fn room(&self, p: Point) -> f64 {
+    pub(in crate::stet) fn room(&self, p: PlanePoint) -> f64 {
         self.room_and_nearest(p).0
     }
 
     /// Room of a place, and the nearest segment: `None` for a place inside that is farther than [`FAR_M`] from all of them.
-    fn room_and_nearest(&self, p: Point) -> (f64, Option<u32>) {
+    fn room_and_nearest(&self, p: PlanePoint) -> (f64, Option<u32>) {
         count(WorkKind::Distance, 1);
         let near = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p);
         let far = near.0.sqrt();
@@ -278,7 +278,7 @@ impl Ground {
     }
 
     /// Square of the distance of a place from the boundary, and the nearest segment.
-    fn nearest_of_all(&self, p: Point) -> (f64, Option<u32>) {
+    fn nearest_of_all(&self, p: PlanePoint) -> (f64, Option<u32>) {
         let mut nearest = (f64::INFINITY, None);
         for (first, (segments, [low, high])) in
             (0..).step_by(BUNDLE).zip(self.segments.chunks(BUNDLE).zip(&self.bundles))
@@ -345,7 +345,7 @@ impl Ground {
     /// A part of the piece over a part of the step is bounded in two ways. Rooms change no faster than places, so its middle speaks for all of it.
     /// And no place is deeper than its distance from the segment that is nearest to the middle, which is greatest at a corner of the part.
     fn depth(&self, swept: &SweptPiece<'_>) -> f64 {
-        let between = |a: Point, b: Point, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
+        let between = |a: PlanePoint, b: PlanePoint, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
         let (before, after, turned) = swept.unslid();
         let at = |part: f64, moment: f64| {
             let [front, rear] = [0, 1].map(|i| between(before[i], after[i], moment));
@@ -390,8 +390,8 @@ impl Ground {
     }
 
     /// Whether any vertex of the boundary lies within a rectangle: an island may be so small that no side of it is near.
-    pub(in crate::stet) fn under(&self, corners: [Point; 4]) -> bool {
-        let within = |p: Point| {
+    pub(in crate::stet) fn under(&self, corners: [PlanePoint; 4]) -> bool {
+        let within = |p: PlanePoint| {
             (0..4).all(|i| {
                 let (a, b) = (corners[i], corners[(i + 1) % 4]);
                 (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
@@ -402,7 +402,7 @@ impl Ground {
 }
 
 /// The corners of a box around segments.
-fn around(segments: &[Segment]) -> [Point; 2] {
+fn around(segments: &[Segment]) -> [PlanePoint; 2] {
     let ends = segments.iter().flat_map(|s| [s.a, s.b]);
     ends.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
         [[0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))]
@@ -410,33 +410,33 @@ fn around(segments: &[Segment]) -> [Point; 2] {
 }
 
 /// Where the line from `a` to `b` reaches the second coordinate `y`.
-fn crossing(a: Point, b: Point, y: f64) -> f64 {
+fn crossing(a: PlanePoint, b: PlanePoint, y: f64) -> f64 {
     a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
 }
 
 #[inline]
-pub(in crate::stet) fn apart(a: Point, b: Point) -> f64 {
+pub(in crate::stet) fn apart(a: PlanePoint, b: PlanePoint) -> f64 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
 
 /// A segment of the boundary.
 struct Segment {
-    a: Point,
-    b: Point,
-    along: Point,
+    a: PlanePoint,
+    b: PlanePoint,
+    along: PlanePoint,
     /// 1 over the square of its length.
     inverse: f64,
 }
 
 impl Segment {
-    fn new([a, b]: [Point; 2]) -> Self {
+    fn new([a, b]: [PlanePoint; 2]) -> Self {
         let along = [b[0] - a[0], b[1] - a[1]];
         Self { a, b, along, inverse: 1.0 / (along[0] * along[0] + along[1] * along[1]).max(TOUCHING_M2) }
     }
 
     /// Square of the distance of a place.
     #[inline(always)]
-    fn squared(&self, p: Point) -> f64 {
+    fn squared(&self, p: PlanePoint) -> f64 {
         let e = [p[0] - self.a[0], p[1] - self.a[1]];
         let share = ((self.along[0] * e[0] + self.along[1] * e[1]) * self.inverse).clamp(0.0, 1.0);
         let off = [e[0] - share * self.along[0], e[1] - share * self.along[1]];
@@ -445,17 +445,17 @@ impl Segment {
 
     /// The place of the segment that is nearest to `p`, from `p`.
     #[inline(always)]
-    fn towards(&self, p: Point) -> Point {
+    fn towards(&self, p: PlanePoint) -> PlanePoint {
         let e = [p[0] - self.a[0], p[1] - self.a[1]];
         let share = ((self.along[0] * e[0] + self.along[1] * e[1]) * self.inverse).clamp(0.0, 1.0);
         [share * self.along[0] - e[0], share * self.along[1] - e[1]]
     }
 
     /// The shortest way from the hull of four points to the segment. `None` if they touch. `pairs`: those of the points ([`pairs`]).
-    fn gap(&self, corners: &[Point; 4], pairs: &[Self; 6]) -> Option<Point> {
+    fn gap(&self, corners: &[PlanePoint; 4], pairs: &[Self; 6]) -> Option<PlanePoint> {
         let (a, b) = (self.a, self.b);
         let mut least = (f64::INFINITY, [0.0; 2]);
-        let mut shorter = |gap: Point| {
+        let mut shorter = |gap: PlanePoint| {
             let squared = gap[0] * gap[0] + gap[1] * gap[1];
             if squared < least.0 {
                 least = (squared, gap);
@@ -470,7 +470,7 @@ impl Segment {
         }
         let within = (0..4).any(|left_out| {
             let [p, q, r] = [1, 2, 3].map(|k| corners[(left_out + k) % 4]);
-            let turn = |p: Point, q: Point| (q[0] - p[0]) * (a[1] - p[1]) - (q[1] - p[1]) * (a[0] - p[0]);
+            let turn = |p: PlanePoint, q: PlanePoint| (q[0] - p[0]) * (a[1] - p[1]) - (q[1] - p[1]) * (a[0] - p[0]);
             let turns = [turn(p, q), turn(q, r), turn(r, p)];
             turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
         });
@@ -479,13 +479,14 @@ impl Segment {
 }
 
 /// The segments between all pairs of four points: the order of the points around their hull does not matter.
-fn pairs(points: &[Point; 4]) -> [Segment; 6] {
+fn pairs(points: &[PlanePoint; 4]) -> [Segment; 6] {
     [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]].map(|pair| Segment::new(pair.map(|k| points[k])))
 }
 
 /// Whether two segments cross.
-fn cross(p: Point, q: Point, a: Point, b: Point) -> bool {
-    let turn = |p: Point, q: Point, r: Point| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+fn cross(p: PlanePoint, q: PlanePoint, a: PlanePoint, b: PlanePoint) -> bool {
+    let turn =
+        |p: PlanePoint, q: PlanePoint, r: PlanePoint| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let (c, d) = (turn(p, q, a), turn(p, q, b));
     let (e, f) = (turn(a, b, p), turn(a, b, q));
     (c > 0.0) != (d > 0.0) && (e > 0.0) != (f > 0.0)
@@ -496,12 +497,12 @@ fn cross(p: Point, q: Point, a: Point, b: Point) -> bool {
 mod tests {
     use super::*;
 
-    fn square(at: Point, half: f64) -> Vec<Point> {
+    fn square(at: PlanePoint, half: f64) -> Vec<PlanePoint> {
         [[-half, -half], [half, -half], [half, half], [-half, half]].map(|p| [p[0] + at[0], p[1] + at[1]]).to_vec()
     }
 
-    fn yard() -> Ground {
-        Ground::new(&Area { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0)] }).unwrap()
+    fn yard() -> AreaGrid {
+        AreaGrid::new(&PlaneArea { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0)] }).unwrap()
     }
 
     #[test]
@@ -521,8 +522,8 @@ mod tests {
 
     #[test]
     fn cells_know_inside_and_outside_as_the_area_does() {
-        let area = Area { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0), square([-9.0, 3.0], 4.0)] };
-        let ground = Ground::new(&area).unwrap();
+        let area = PlaneArea { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0), square([-9.0, 3.0], 4.0)] };
+        let ground = AreaGrid::new(&area).unwrap();
         for i in 0..120 {
             for j in 0..120 {
                 let p = [-30.0 + 0.5 * f64::from(i) + 0.013, -30.0 + 0.5 * f64::from(j) + 0.017];
@@ -531,7 +532,7 @@ mod tests {
         }
     }
 
-    fn room(before: [Point; 2], after: [Point; 2]) -> f64 {
+    fn room(before: [PlanePoint; 2], after: [PlanePoint; 2]) -> f64 {
         yard().swept(&SweptPiece { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2], inside: false }).0
     }
 
@@ -552,7 +553,8 @@ mod tests {
         for _ in 0..300 {
             let (at, heading, turn) = ([draw(15.0, 24.0), draw(-6.0, 6.0)], draw(-3.2, 3.2), draw(-0.1, 0.1));
             let (length, slid, aside) = (draw(0.0, 1.5), draw(-1.0, 1.0), draw(-0.8, 0.8));
-            let ends = |at: Point, heading: f64| [at, [at[0] - length * heading.cos(), at[1] - length * heading.sin()]];
+            let ends =
+                |at: PlanePoint, heading: f64| [at, [at[0] - length * heading.cos(), at[1] - length * heading.sin()]];
             let moved = [
                 at[0] + slid * heading.cos() - aside * heading.sin(),
                 at[1] + slid * heading.sin() + aside * heading.cos(),
@@ -562,7 +564,7 @@ mod tests {
             for i in 0..=40 {
                 for j in 0..=40 {
                     let (part, moment) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
-                    let between = |a: Point, b: Point, t: f64| [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+                    let between = |a: PlanePoint, b: PlanePoint, t: f64| [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
                     let piece = [0, 1].map(|end| between(before[end], after[end], moment));
                     deepest = deepest.max(-ground.room(between(piece[0], piece[1], part)));
                 }
@@ -586,20 +588,20 @@ mod tests {
     #[test]
     fn what_moves_along_an_edge_costs_no_leeway() {
         let (before, after) = ([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
-        let stray = |towards: Point| [0.3 * towards[1].abs() + 0.1 * towards[0].abs(); 2];
+        let stray = |towards: PlanePoint| [0.3 * towards[1].abs() + 0.1 * towards[0].abs(); 2];
         let piece = SweptPiece { before, after, most: 0.4, enough: FAR_M, stray: &stray, inside: false };
         let (room, leeway) = yard().swept(&piece);
         assert!((room - 1.5).abs() < 1e-12 && (leeway - 1.4).abs() < 1e-12, "{room} {leeway}");
     }
 
     /// A star of 90 corners with an island, and places around it.
-    fn star() -> (Area, Vec<Point>) {
+    fn star() -> (PlaneArea, Vec<PlanePoint>) {
         let corner = |k: u32| {
             let angle = f64::from(k) / 90.0 * std::f64::consts::TAU;
             let radius = 14.0 + 5.0 * (7.0 * angle).sin() + 0.8 * (31.0 * angle).cos();
             [radius * angle.cos(), radius * angle.sin()]
         };
-        let area = Area { rings: vec![(0..90).map(corner).collect(), square([2.3, -4.1], 0.7)] };
+        let area = PlaneArea { rings: vec![(0..90).map(corner).collect(), square([2.3, -4.1], 0.7)] };
         let places = (0..6_400_u32).map(|i| [f64::from(i % 80), f64::from(i / 80)].map(|k| -21.0 + 0.531 * k));
         (area, places.collect())
     }
@@ -607,7 +609,7 @@ mod tests {
     #[test]
     fn the_nearest_segments_of_a_cell_are_those_of_the_whole_boundary() {
         let (area, places) = star();
-        let ground = Ground::new(&area).unwrap();
+        let ground = AreaGrid::new(&area).unwrap();
         for p in places {
             let far = apart(area.nearest(p).unwrap(), p);
             let room = if area.contains(p) { far.min(FAR_M) } else { -far };
@@ -618,14 +620,14 @@ mod tests {
     #[test]
     fn the_room_of_a_swept_piece_is_that_to_the_whole_boundary() {
         let (area, places) = star();
-        let ground = Ground::new(&area).unwrap();
+        let ground = AreaGrid::new(&area).unwrap();
         let mut near = 0;
         for (i, at) in places.into_iter().enumerate().filter(|(_, at)| area.contains(*at)) {
             let (sin, cos) = (0.7 * i as f64).sin_cos();
-            let ends = |at: Point| [at, [at[0] - 1.2 * cos, at[1] - 1.2 * sin]];
+            let ends = |at: PlanePoint| [at, [at[0] - 1.2 * cos, at[1] - 1.2 * sin]];
             let (before, after) = (ends(at), ends([at[0] + 0.4 * cos - 0.1 * sin, at[1] + 0.4 * sin + 0.1 * cos]));
             let corners = [before[0], before[1], after[1], after[0]];
-            let gaps: Option<Vec<Point>> =
+            let gaps: Option<Vec<PlanePoint>> =
                 area.segments().map(|s| Segment::new(s).gap(&corners, &pairs(&corners))).collect();
             let swept = SweptPiece { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2], inside: false };
             let (room, leeway) = ground.swept(&swept);

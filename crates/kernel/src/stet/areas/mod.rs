@@ -5,9 +5,9 @@ mod ground;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use netcert_base::corridor::{Area, AreaSpan, Corridor};
+use netcert_base::corridor::{AreaSpan, Corridor, PlaneArea};
 
-pub(super) use ground::{FAR_OUTSIDE_M, Ground, Point, SweptPiece, apart};
+pub(super) use ground::{AreaGrid, FAR_OUTSIDE_M, PlanePoint, SweptPiece, apart};
 
 /// A span of stations of the steer axle, with its area.
 #[derive(Clone)]
@@ -16,30 +16,30 @@ struct Window {
     first: usize,
     last: usize,
     /// `None` where the area cannot be used: nothing is inside.
-    ground: Option<Arc<Ground>>,
+    ground: Option<Arc<AreaGrid>>,
 }
 
 /// Areas whose boundaries have been prepared. Paths of one junction share its area.
 #[derive(Default)]
 pub struct Grounds(RefCell<Vec<Prepared>>);
 
-type Prepared = (Arc<Area>, Option<Arc<Ground>>);
+type Prepared = (Arc<PlaneArea>, Option<Arc<AreaGrid>>);
 
 impl Grounds {
-    fn of(&self, area: &Arc<Area>) -> Option<Arc<Ground>> {
+    fn of(&self, area: &Arc<PlaneArea>) -> Option<Arc<AreaGrid>> {
         if let Some((_, ground)) = self.0.borrow().iter().find(|(known, _)| Arc::ptr_eq(known, area)) {
             return ground.clone();
         }
-        let ground = Ground::new(area).map(Arc::new);
+        let ground = AreaGrid::new(area).map(Arc::new);
         self.0.borrow_mut().push((Arc::clone(area), ground.clone()));
         ground
     }
 }
 
 /// The areas of a corridor, prepared for its extended stations.
-pub(super) struct Areas(Vec<Window>);
+pub(super) struct PreparedAreas(Vec<Window>);
 
-impl Areas {
+impl PreparedAreas {
     pub(super) fn new(corridor: &Corridor, lead: usize, grounds: &Grounds) -> Self {
         let last = corridor.len().saturating_sub(1);
         let window = |span: &AreaSpan| Window {
@@ -66,7 +66,7 @@ impl Areas {
 
     /// The areas that count at all of the given stations of the steer axle.
     #[inline]
-    pub(super) fn count(&self, from: usize, to: usize) -> impl Iterator<Item = Option<&Ground>> {
+    pub(super) fn count(&self, from: usize, to: usize) -> impl Iterator<Item = Option<&AreaGrid>> {
         self.0.iter().filter(move |w| w.first <= from && to <= w.last).map(|w| w.ground.as_deref())
     }
 

@@ -32,7 +32,7 @@ const JUMPED: usize = 4;
 /// these metres. It then lies on a leg of the corridor that the vehicle has left or has yet to reach.
 const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
-/// `Point::covered` of a point that comes from an area: no station counts as jumped over until its next foot.
+/// `BodyPoint::covered` of a point that comes from an area: no station counts as jumped over until its next foot.
 pub(super) const FRESH: usize = usize::MAX;
 /// Added to a head's station so that differences stay positive for points ahead of the head.
 const AHEAD: usize = 1 << 20;
@@ -44,7 +44,7 @@ pub(super) struct Body {
     /// A and g at the axle, at the sweep's γ.
     pub(super) heading: f64,
     pub(super) axle: f64,
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<BodyPoint>,
     /// The unit at the last station, where areas count.
     pub(super) stood: Option<Stand>,
     pub(super) rooms: Rooms,
@@ -54,22 +54,22 @@ pub(super) struct Body {
 
 pub(super) struct LastAxle {
     pub(super) foot: usize,
-    pub(super) way: Way,
+    pub(super) way: FootRange,
 }
 
 /// Where a foot is on a straight, in stations behind the head, and how far it may be from there.
-pub(super) struct Way {
+pub(super) struct FootRange {
     pub(super) behind: usize,
     pub(super) astray: usize,
 }
 
-pub(super) struct Point {
+pub(super) struct BodyPoint {
     pub(super) on_axis: AxisPoint,
     pub(super) tag: u64,
     /// Distance to the previous point, metres; 0 for the first.
     pub(super) gap: f64,
     pub(super) foot: usize,
-    pub(super) way: Way,
+    pub(super) way: FootRange,
     /// Every station up to this one has been under the point or is lost.
     pub(super) covered: usize,
 }
@@ -128,7 +128,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             coupling = axle - unit.hitch;
             let foot = |ahead: f64| (track.first_head as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
-            let way = |ahead: f64| Way {
+            let way = |ahead: f64| FootRange {
                 behind: track.first_head + AHEAD - foot(ahead),
                 astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
             };
@@ -146,7 +146,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     from_axle: (1.0 - unit.points[p] / unit.length).abs(),
                     from_coupling: (unit.points[p] / unit.length).abs(),
                 };
-                Point {
+                BodyPoint {
                     on_axis,
                     tag: tag(index, p),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
@@ -194,7 +194,7 @@ pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
     }
 }
 
-impl Way {
+impl FootRange {
     /// The foot on a straight when the head is at station `head`.
     pub(super) fn expected(&self, track: &Track, head: usize) -> usize {
         (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
@@ -225,7 +225,7 @@ impl LastAxle {
     }
 }
 
-impl Point {
+impl BodyPoint {
     /// Records the stations that have been under the point.
     #[inline(always)]
     pub(super) fn cover(&mut self, feet: Feet, minima: &mut Minima) {

@@ -1,6 +1,6 @@
 //! The room of the pieces of a unit's sides, carried from step to step.
 
-use crate::stet::areas::{Areas, FAR_OUTSIDE_M, Point, apart};
+use crate::stet::areas::{FAR_OUTSIDE_M, PlanePoint, PreparedAreas, apart};
 
 /// Sides are covered in pieces no longer than this, metres. The hull of a piece over a step is little larger than what the piece
 /// sweeps.
@@ -32,7 +32,7 @@ pub(in crate::stet) struct Rooms {
     /// The station after the last step.
     head: usize,
     /// Without disturbances: the places that were measured last, with their rooms.
-    pub(in crate::stet) places: Vec<(Point, f64)>,
+    pub(in crate::stet) places: Vec<(PlanePoint, f64)>,
 }
 
 impl Rooms {
@@ -74,10 +74,10 @@ impl Rooms {
     /// since it was measured. Places are numbered.
     pub(in crate::stet) fn nominal(
         &mut self,
-        areas: &Areas,
+        areas: &PreparedAreas,
         head: usize,
         number: usize,
-        p: Point,
+        p: PlanePoint,
         enough: f64,
     ) -> Option<f64> {
         let known = self.places.get(number);

@@ -1,6 +1,6 @@
 //! Where a unit stands at a head station, and what bounds its deviations there.
 
-use crate::stet::areas::Point;
+use crate::stet::areas::PlanePoint;
 use crate::stet::block::{BLOCK, row};
 use crate::stet::model::MAX_POINTS;
 
@@ -9,8 +9,8 @@ use super::Body;
 /// A unit at a head station.
 pub(in crate::stet) struct Stand {
     pub(in crate::stet) head: usize,
-    pub(in crate::stet) axle: Point,
-    pub(in crate::stet) along: Point,
+    pub(in crate::stet) axle: PlanePoint,
+    pub(in crate::stet) along: PlanePoint,
     /// Way of the axle to the next station, metres, and change of its curvature per metre, 1/m².
     pub(in crate::stet) way: f64,
     pub(in crate::stet) jerk: f64,
@@ -21,7 +21,7 @@ pub(in crate::stet) struct Stand {
 
 impl Stand {
     #[inline]
-    pub(in crate::stet) fn place(&self, ahead: f64, aside: f64) -> Point {
+    pub(in crate::stet) fn place(&self, ahead: f64, aside: f64) -> PlanePoint {
         let [x, y] = self.along;
         [self.axle[0] + ahead * x - aside * y, self.axle[1] + ahead * y + aside * x]
     }

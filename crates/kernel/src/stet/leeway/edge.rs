@@ -21,7 +21,7 @@ pub(super) fn spread<V: Vector>(at: [&Fields<V>; 2], lateral: [V; 2]) -> [V; 2] 
 
 /// One side's point and the edge beside it, read at a station.
 #[derive(Clone, Copy)]
-pub(super) struct Edge<V> {
+pub(super) struct SideEdge<V> {
     /// Half-width at the foot less lateral place, metres.
     pub(super) room: V,
     /// See [`spread`].
@@ -34,7 +34,7 @@ pub(super) struct Edge<V> {
     rounding: V,
 }
 
-impl<V: Vector> Edge<V> {
+impl<V: Vector> SideEdge<V> {
     #[inline(always)]
     pub(super) fn left(at: &Fields<V>, along: V, lateral: V, spread: V) -> Self {
         let (on, lateral) = foot(at, along, lateral, spread);
@@ -69,22 +69,22 @@ by_instruction_set! {
     /// Reads each side's point at the station of its own foot. In a bend, or with the body askew, that foot is metres from
     /// the foot of the axis.
     #[cold]
-    pub(super) fn apart<V>(track: &Track, feet: Feet, s: &States<V>, ahead: f64, half_width: f64, edges: &[Edge<V>; 2]) -> [Edge<V>; 2] {
+    pub(super) fn apart<V>(track: &Track, feet: Feet, s: &States<V>, ahead: f64, half_width: f64, edges: &[SideEdge<V>; 2]) -> [SideEdge<V>; 2] {
         let (left, right) = (
             aside(track, feet, s, [ahead, half_width], &edges[0]),
             aside(track, feet, s, [ahead, -half_width], &edges[1]),
         );
         let [of_left, of_right] = spread([&left.at, &right.at], [left.lateral, right.lateral]);
         [
-            Edge::left(&left.at, left.along, left.lateral, of_left),
-            Edge::right(&right.at, right.along, right.lateral, of_right),
+            SideEdge::left(&left.at, left.along, left.lateral, of_left),
+            SideEdge::right(&right.at, right.along, right.lateral, of_right),
         ]
     }
 }
 
 /// The place `ahead` of the axle and `left` of the axis, as its own foot sees it; `edge` is the place seen from the foot of the axis.
 #[inline(always)]
-fn aside<V: Vector>(track: &Track, feet: Feet, s: &States<V>, [ahead, left]: [f64; 2], edge: &Edge<V>) -> Seen<V> {
+fn aside<V: Vector>(track: &Track, feet: Feet, s: &States<V>, [ahead, left]: [f64; 2], edge: &SideEdge<V>) -> Seen<V> {
     let on = edge.on.array();
     let mut own = [0; LANES];
     for (i, own) in own.iter_mut().enumerate() {

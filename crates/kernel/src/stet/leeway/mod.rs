@@ -20,7 +20,7 @@ use super::track::Track;
 use between::Gap;
 use sample::{Sample, lower, sample};
 use sides::Knots;
-use states::{Rows, States};
+use states::{StateRows, States};
 
 by_instruction_set! {
     /// Lowers `minima` by all points of one unit over one block. With `REFINED`, `refined` holds a block of bounds per
@@ -43,7 +43,7 @@ by_instruction_set! {
                 alone = track.areas.replace(first, first + LANES - 1);
                 plane::pass::<CERTIFY, REFINED>(track, body, block, refined, head, first, alone, minima);
             }
-            let rows = Rows { block, refined, group };
+            let rows = StateRows { block, refined, group };
             let s = States::<V>::read(&rows);
             if !alone {
                 pass::<V, CERTIFY, REFINED>(track, body, &s, &rows, first, minima);
@@ -69,7 +69,7 @@ fn pass<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
     body: &mut Body,
     s: &States<V>,
-    rows: &Rows<'_>,
+    rows: &StateRows<'_>,
     first: usize,
     minima: &mut Minima,
 ) {

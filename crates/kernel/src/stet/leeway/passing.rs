@@ -3,7 +3,7 @@
 use crate::stet::lanes::Vector;
 use crate::stet::track::Fields;
 
-use super::edge::Edge;
+use super::edge::SideEdge;
 use super::states::States;
 
 /// Terms of the foot's series beyond third order, per κ³σ⁴: an eighth, times 1 + |κb| on the outside, where |κb| stays below 0.9; and
@@ -35,7 +35,7 @@ impl<V: Vector> Passing<'_, V> {
     /// The room of one side point less its bounds: what both sides have in common, what the lean of the body adds, and what a slide
     /// by `along` costs.
     #[inline(always)]
-    pub(super) fn left_over(&self, edge: &Edge<V>, [common, lean, along]: [V; 3], aside: f64) -> V {
+    pub(super) fn left_over(&self, edge: &SideEdge<V>, [common, lean, along]: [V; 3], aside: f64) -> V {
         let bend = self.at.curvature.abs();
         let crowd = edge.spread.max(V::splat(1.0));
         let slide = crowd * along;
@@ -48,7 +48,7 @@ impl<V: Vector> Passing<'_, V> {
     /// an eighth of its second derivative, where that is positive (docs/proof.md, section 7, "between head stations"). Per metre of
     /// the axle, the unit turns by `w`, and the point moves by `along` along the road.
     #[inline(always)]
-    fn sag(&self, edge: &Edge<V>, aside: f64) -> V {
+    fn sag(&self, edge: &SideEdge<V>, aside: f64) -> V {
         let Self { s, at, cos, sin, ahead, step2 } = *self;
         let (c, t) = (cos.abs(), sin.abs());
         let w = s.curvature;

@@ -5,7 +5,7 @@ use crate::stet::body::{AxisPoint, Body, Seen};
 use crate::stet::lanes::Vector;
 use crate::stet::track::Track;
 
-use super::edge::{Edge, apart, rough, spread};
+use super::edge::{SideEdge, apart, rough, spread};
 use super::passing::Passing;
 use super::states::States;
 
@@ -81,7 +81,8 @@ pub(super) fn leeways<V: Vector, const CERTIFY: bool, const REFINED: bool>(
     let (left_along, left_at) = (seen.along - askew, seen.lateral + across);
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
     let spread = spread([at, at], [left_at, right_at]);
-    let mut edges = [Edge::left(at, left_along, left_at, spread[0]), Edge::right(at, right_along, right_at, spread[1])];
+    let mut edges =
+        [SideEdge::left(at, left_along, left_at, spread[0]), SideEdge::right(at, right_along, right_at, spread[1])];
     if CERTIFY && rough(at) {
         edges = apart(track, feet, s, on_axis.ahead, body.half_width, &edges);
     }

@@ -4,14 +4,14 @@ use crate::stet::block::{BLOCK, row};
 use crate::stet::lanes::{LANES, Vector};
 
 /// The rows of a unit's block, at one of its groups of eight head stations.
-pub(super) struct Rows<'a> {
+pub(super) struct StateRows<'a> {
     pub(super) block: &'a [f64],
     /// A block of bounds per body point; empty unless the adjoint refined the unit.
     pub(super) refined: &'a [f64],
     pub(super) group: usize,
 }
 
-impl Rows<'_> {
+impl StateRows<'_> {
     #[inline(always)]
     pub(super) fn load<V: Vector>(&self, field: usize) -> V {
         let start = field * BLOCK + self.group * LANES;
@@ -44,7 +44,7 @@ pub(super) struct States<V> {
 
 impl<V: Vector> States<V> {
     #[inline(always)]
-    pub(super) fn read(rows: &Rows<'_>) -> Self {
+    pub(super) fn read(rows: &StateRows<'_>) -> Self {
         Self {
             x: rows.load(row::X),
             y: rows.load(row::Y),

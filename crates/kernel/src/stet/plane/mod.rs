@@ -7,13 +7,13 @@
 mod passage;
 mod planning;
 
-use super::areas::{FAR_OUTSIDE_M, Point};
+use super::areas::{FAR_OUTSIDE_M, PlanePoint};
 use super::block::{BARELY_CLOSED_RAD, BLOCK, Minima, row};
 use super::body::{Body, FRESH, Stand, least};
 use super::lanes::{LANES, tagged};
 use super::model::MAX_POINTS;
 use super::track::Track;
-use passage::{Lowest, Passage};
+use passage::{Lowest, UnitPassage};
 
 /// Leeways that differ by less are measured where only the least one counts, metres: rounding decides between them.
 const SAME_M: f64 = 1e-9;
@@ -63,7 +63,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                 let known = (minima.floor + SAME_M).max(minima.keep);
                 let known = [0, 1].map(|side| minima.area[side][before.head].min(known));
                 let lowest = if closes {
-                    let passage = Passage::new(track, &body.points, body.half_width, &before, &stand);
+                    let passage = UnitPassage::new(track, &body.points, body.half_width, &before, &stand);
                     passage.lowest(&mut body.rooms, known)
                 } else {
                     [Lowest { leeway: FAR_OUTSIDE_M, point: Some(0) }; 2]
@@ -91,7 +91,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
 }
 
 /// The station nearest to a place, found by walking from `foot`.
-fn walked(track: &Track, foot: usize, [x, y]: Point) -> usize {
+fn walked(track: &Track, foot: usize, [x, y]: PlanePoint) -> usize {
     let f = &track.fields;
     let last = track.len() - 1;
     let mut k = foot.min(last);
@@ -114,7 +114,7 @@ fn walked(track: &Track, foot: usize, [x, y]: Point) -> usize {
 pub(super) mod tests {
     use std::sync::Arc;
 
-    use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
+    use netcert_base::corridor::{AreaSpan, Corridor, CurvatureProfile, PlaneArea};
     use netcert_base::stop::Stop;
     use netcert_base::vehicle::Catalogue;
 
@@ -141,7 +141,7 @@ pub(super) mod tests {
         ring.push(edge(last, beyond_m, corridor.left_m[last]));
         ring.extend((0..=last).rev().map(|k| edge(k, 0.0, corridor.left_m[k])));
         ring.push(edge(0, -beyond_m, corridor.left_m[0]));
-        let area = Arc::new(Area { rings: vec![ring] });
+        let area = Arc::new(PlaneArea { rings: vec![ring] });
         Corridor { areas: vec![AreaSpan { heads, area }], ..corridor.clone() }
     }
 

@@ -1,7 +1,7 @@
 //! One unit over the step between two head stations: what each piece of its sides has left (docs/proof.md, section 11).
 
-use crate::stet::areas::{Areas, FAR_OUTSIDE_M, Point, SweptPiece, apart};
-use crate::stet::body::{Point as BodyPoint, Rooms, Stand};
+use crate::stet::areas::{FAR_OUTSIDE_M, PlanePoint, PreparedAreas, SweptPiece, apart};
+use crate::stet::body::{BodyPoint, Rooms, Stand};
 use crate::stet::model::MAX_POINTS;
 use crate::stet::track::Track;
 
@@ -35,8 +35,8 @@ impl Lowest {
 }
 
 /// One unit over the step between two stations.
-pub(super) struct Passage<'a> {
-    areas: &'a Areas,
+pub(super) struct UnitPassage<'a> {
+    areas: &'a PreparedAreas,
     points: &'a [BodyPoint],
     half_width: f64,
     before: &'a Stand,
@@ -54,7 +54,7 @@ pub(super) struct Passage<'a> {
     slide: Option<(f64, [f64; 2])>,
 }
 
-impl<'a> Passage<'a> {
+impl<'a> UnitPassage<'a> {
     pub(super) fn new(
         track: &'a Track,
         points: &'a [BodyPoint],
@@ -115,9 +115,9 @@ impl<'a> Passage<'a> {
 
     /// Most that a place of the body may move in the direction `towards`, a unit vector. In that direction the place moves as the
     /// place of the axis does on which the direction's normal through it meets the axis.
-    fn stray(&self, towards: Point, ahead: f64, aside: f64) -> f64 {
+    fn stray(&self, towards: PlanePoint, ahead: f64, aside: f64) -> f64 {
         let a = self.heading;
-        let in_frame = |u: Point| {
+        let in_frame = |u: PlanePoint| {
             let (along, across) = (towards[0] * u[0] + towards[1] * u[1], u[0] * towards[1] - u[1] * towards[0]);
             let first = if across.abs() > OBLIQUE {
                 across.abs() * self.across_at(ahead - aside * along / across)
@@ -176,7 +176,7 @@ impl<'a> Passage<'a> {
         if left - most >= enough {
             return (left, left - most);
         }
-        let stray = |towards: Point| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
+        let stray = |towards: PlanePoint| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
         let inside = self.was_inside(known);
         self.room(&SweptPiece { before, after, most, enough, stray: &stray, inside })
     }
@@ -240,7 +240,7 @@ impl<'a> Passage<'a> {
         rooms.rooms[number] = if left - most >= lowest.leeway {
             left
         } else {
-            let stray = |towards: Point| piece.ends.map(|ahead| self.stray(towards, ahead, aside) + sag);
+            let stray = |towards: PlanePoint| piece.ends.map(|ahead| self.stray(towards, ahead, aside) + sag);
             let inside = self.was_inside(rooms.before[number]);
             let swept = SweptPiece { before, after, most, enough: lowest.leeway, stray: &stray, inside };
             let (room, leeway) = self.room(&swept);
@@ -254,6 +254,6 @@ impl<'a> Passage<'a> {
 }
 
 /// Most that the room of a piece falls over a step, metres: the hulls of two steps share the piece at the station between them.
-fn moved(before: [Point; 2], after: [Point; 2]) -> f64 {
+fn moved(before: [PlanePoint; 2], after: [PlanePoint; 2]) -> f64 {
     apart(before[0], after[0]).max(apart(before[1], after[1]))
 }

@@ -15,7 +15,7 @@ use super::LonLat;
 
 /// Kinds of objects, in the order of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Kind {
+pub enum ObjectKind {
     /// A node.
     Node,
     /// A way.
@@ -24,7 +24,7 @@ pub enum Kind {
     Relation,
 }
 
-impl Kind {
+impl ObjectKind {
     /// The word for the kind.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -59,7 +59,7 @@ pub enum Object {
     /// A relation.
     Relation {
         /// Kind, id and role of each member.
-        members: Vec<(Kind, i64, String)>,
+        members: Vec<(ObjectKind, i64, String)>,
         /// Its tags.
         tags: TagList,
     },
@@ -67,7 +67,7 @@ pub enum Object {
 
 /// The state of an object after a change.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Change {
+pub struct ObjectChange {
     /// The object's version; 0 if the file has none.
     pub version: u64,
     /// The object; `None` if it was deleted.
@@ -77,7 +77,7 @@ pub struct Change {
 /// Changes by object.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changes {
-    objects: BTreeMap<(Kind, i64), Change>,
+    objects: BTreeMap<(ObjectKind, i64), ObjectChange>,
     /// The latest time stamp of a change, as the files have it; nothing if none has one.
     newest: Option<String>,
 }
@@ -96,7 +96,7 @@ impl Changes {
     }
 
     /// Adds a later change.
-    pub fn add(&mut self, kind: Kind, id: i64, change: Change) {
+    pub fn add(&mut self, kind: ObjectKind, id: i64, change: ObjectChange) {
         let known = self.objects.get(&(kind, id));
         if known.is_none_or(|known| known.version <= change.version) {
             self.objects.insert((kind, id), change);
@@ -124,7 +124,7 @@ impl Changes {
 
     /// Whether an object of this kind and id was changed, so that an older one does not count.
     #[must_use]
-    pub fn has(&self, kind: Kind, id: i64) -> bool {
+    pub fn has(&self, kind: ObjectKind, id: i64) -> bool {
         !self.objects.is_empty() && self.objects.contains_key(&(kind, id))
     }
 

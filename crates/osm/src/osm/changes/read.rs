@@ -12,7 +12,7 @@ use flate2::bufread::MultiGzDecoder;
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 
-use super::{Change, ChangeError, Changes, Kind, Object};
+use super::{ChangeError, Changes, Object, ObjectChange, ObjectKind};
 use crate::osm::LonLat;
 
 /// What a block of the file does to its objects.
@@ -83,7 +83,7 @@ struct Parser<'p, R: BufRead> {
     changes: Changes,
     action: Option<Action>,
     /// The object that is being read: kind, id and state.
-    object: Option<(Kind, i64, Change)>,
+    object: Option<(ObjectKind, i64, ObjectChange)>,
     /// Whether the root element was seen, and its end.
     root: [bool; 2],
 }
@@ -139,9 +139,9 @@ impl<'p, R: BufRead> Parser<'p, R> {
             ("osmChange", None, None) if !self.root[0] => self.root[0] = true,
             ("create" | "modify", None, None) if self.root[0] => self.action = Some(Action::Put),
             ("delete", None, None) if self.root[0] => self.action = Some(Action::Delete),
-            ("node", Some(action), None) => self.object(Kind::Node, action, element)?,
-            ("way", Some(action), None) => self.object(Kind::Way, action, element)?,
-            ("relation", Some(action), None) => self.object(Kind::Relation, action, element)?,
+            ("node", Some(action), None) => self.object(ObjectKind::Node, action, element)?,
+            ("way", Some(action), None) => self.object(ObjectKind::Way, action, element)?,
+            ("relation", Some(action), None) => self.object(ObjectKind::Relation, action, element)?,
             ("tag" | "nd" | "member", _, Some(_)) => self.part(name, element)?,
             ("bounds" | "bound", ..) => {}
             _ => {
@@ -164,7 +164,7 @@ impl<'p, R: BufRead> Parser<'p, R> {
         }
     }
 
-    fn object(&mut self, kind: Kind, action: Action, element: &BytesStart<'_>) -> Result<(), ChangeError> {
+    fn object(&mut self, kind: ObjectKind, action: Action, element: &BytesStart<'_>) -> Result<(), ChangeError> {
         let id: i64 = self.required(element, "id", kind.name())?;
         let version = self.number(element, "version")?.unwrap_or(0);
         if let Some(time) = self.attribute(element, "timestamp")? {
@@ -173,7 +173,7 @@ impl<'p, R: BufRead> Parser<'p, R> {
         let gone = action == Action::Delete || self.attribute(element, "visible")?.as_deref() == Some("false");
         let object = match kind {
             _ if gone => None,
-            Kind::Node => {
+            ObjectKind::Node => {
                 let e7 = |degrees: f64, most: f64| (degrees.abs() <= most).then(|| (degrees * 1e7).round() as i32);
                 let lon = e7(self.required(element, "lon", "node")?, 180.0);
                 let lat = e7(self.required(element, "lat", "node")?, 90.0);
@@ -182,10 +182,10 @@ impl<'p, R: BufRead> Parser<'p, R> {
                 };
                 Some(Object::Node { place: LonLat { lon_e7, lat_e7 }, tags: Vec::new() })
             }
-            Kind::Way => Some(Object::Way { refs: Vec::new(), tags: Vec::new() }),
-            Kind::Relation => Some(Object::Relation { members: Vec::new(), tags: Vec::new() }),
+            ObjectKind::Way => Some(Object::Way { refs: Vec::new(), tags: Vec::new() }),
+            ObjectKind::Relation => Some(Object::Relation { members: Vec::new(), tags: Vec::new() }),
         };
-        self.object = Some((kind, id, Change { version, object }));
+        self.object = Some((kind, id, ObjectChange { version, object }));
         Ok(())
     }
 
@@ -201,17 +201,21 @@ impl<'p, R: BufRead> Parser<'p, R> {
             }
             "nd" => {
                 let node = self.required(element, "ref", "nd")?;
-                if let Some((.., Change { object: Some(Object::Way { refs, .. }), .. })) = &mut self.object {
+                if let Some((.., ObjectChange { object: Some(Object::Way { refs, .. }), .. })) = &mut self.object {
                     refs.push(node);
                 }
             }
             _ => {
                 let kind: String = self.required(element, "type", "member")?;
-                let kind = [Kind::Node, Kind::Way, Kind::Relation].into_iter().find(|known| known.name() == kind);
+                let kind = [ObjectKind::Node, ObjectKind::Way, ObjectKind::Relation]
+                    .into_iter()
+                    .find(|known| known.name() == kind);
                 let kind = kind.ok_or_else(|| self.error("a member is neither node nor way nor relation"))?;
                 let member =
                     (kind, self.required(element, "ref", "member")?, self.required(element, "role", "member")?);
-                if let Some((.., Change { object: Some(Object::Relation { members, .. }), .. })) = &mut self.object {
+                if let Some((.., ObjectChange { object: Some(Object::Relation { members, .. }), .. })) =
+                    &mut self.object
+                {
                     members.push(member);
                 }
             }

@@ -2,7 +2,7 @@
 //!
 //! The most specific key wins (access < vehicle < motor_vehicle < hgv < hgv_articulated; a key with a direction beats
 //! one without), as on the wiki page Key:access. `trailer=no` forbids, because every vehicle here may pull a trailer.
-//! Conditions are not evaluated against a clock; see [`Access::condition`].
+//! Conditions are not evaluated against a clock; see [`AccessTags::condition`].
 
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::{Direction, Permission};
@@ -19,7 +19,7 @@ pub(super) fn is_access_key(head: &str) -> bool {
 
 /// The access tags of one object while they are collected. The inner arrays have the indices none, forward, backward.
 #[derive(Debug, Default)]
-pub(super) struct Access {
+pub(super) struct AccessTags {
     tagged: [[Option<Permission>; 3]; KEYS.len()],
     /// The strictest undecided conditional value per direction: for motor vehicles, then for heavy goods vehicles.
     undecided: [[Permission; 2]; 2],
@@ -48,7 +48,7 @@ pub(super) fn permission(value: &str, notes: &mut Notes) -> Permission {
     best
 }
 
-impl Access {
+impl AccessTags {
     /// Takes `key[:forward|:backward]=value`. Other suffixes mean something else and are not read.
     pub(super) fn take(&mut self, head: &str, suffix: &str, value: &str, notes: &mut Notes) {
         let side = match suffix {

@@ -9,7 +9,7 @@ use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::{SectionReader, Sharing};
 use crate::osm::facts::speed::SpeedTags;
-use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, told};
+use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, tag_lines};
 use crate::words::Named as _;
 
 /// Every reason for which [`way_facts`] leaves a way out.
@@ -170,7 +170,7 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
         legal.take(key, value, &mut notes);
         speed.take(head, suffix, value, &mut notes);
         if is_width(head, suffix) {
-            told::add(&mut width_tags, key, value);
+            tag_lines::add(&mut width_tags, key, value);
         }
         if !section.take(head, suffix, value, &mut notes) {
             unreadable.push((key, value));

@@ -3,14 +3,14 @@
 //! Tagged lanes count first, then those of the class. Lanes for other traffic (bus, cycle) are not open. Both
 //! directions share a road without marked lanes.
 
-use crate::osm::facts::layout::{Layout, SHARED, Segment, Use};
+use crate::osm::facts::layout::{LayoutSegment, RoadLayout, SHARED, Use};
 use crate::osm::facts::section::{LISTED, LaneTags, Mark, in_metres};
 use crate::osm::facts::widths::{Builder, LANE_M, SHARED_BELOW_M, Traffic};
 use crate::osm::facts::{Direction, TrafficSide};
 
 impl Builder<'_> {
     /// The layout of a one-way road. Lanes of oncoming buses lie beyond its own.
-    pub(super) fn one_way(&self, direction: Direction) -> Layout {
+    pub(super) fn one_way(&self, direction: Direction) -> RoadLayout {
         let opposite = opposite(direction);
         let oncoming = if self.tags.is(Mark::Reversible) { 0 } else { self.lane_tags(opposite).count };
         let mut tags = *self.lane_tags(direction);
@@ -47,7 +47,7 @@ impl Builder<'_> {
     }
 
     /// The layout of a two-way road.
-    pub(super) fn two_way(&self) -> Layout {
+    pub(super) fn two_way(&self) -> RoadLayout {
         let (mut forward, mut backward) = (*self.lane_tags(Direction::Forward), *self.lane_tags(Direction::Backward));
         let listed = forward.listed > 0 || backward.listed > 0;
         let known = self.tags.tagged_lanes().is_some() || listed;
@@ -75,7 +75,8 @@ impl Builder<'_> {
         let mut backward = self.lanes(Direction::Backward, &backward, count(n_backward));
         backward.reverse();
         let centre_m = in_metres(self.tags.both_ways_steps).filter(|_| self.tags.both_ways > 0);
-        let centre = Segment { width_m: centre_m, listed: centre_m.is_some(), ..Segment::new(None, Use::Paved) };
+        let centre =
+            LayoutSegment { width_m: centre_m, listed: centre_m.is_some(), ..LayoutSegment::new(None, Use::Paved) };
         let centre = (0..n_centre).map(|_| centre);
         let lanes = if self.side == TrafficSide::Left {
             forward.extend(centre);
@@ -90,14 +91,14 @@ impl Builder<'_> {
     }
 
     /// The lane that both directions share. It is no wider than any width that a list gives.
-    fn shared(&self, directions: &[LaneTags; 2]) -> Segment {
+    fn shared(&self, directions: &[LaneTags; 2]) -> LayoutSegment {
         let listed =
             directions.iter().filter_map(|tags| tags.narrowest_m().into_iter().chain(tags.most_m(0)).reduce(f32::min));
         let most_m = listed.reduce(f32::min);
         if self.tags.is(Mark::WholeRoad) && directions[0].listed == 1 {
-            return Segment { width_m: most_m, listed: most_m.is_some(), ..SHARED };
+            return LayoutSegment { width_m: most_m, listed: most_m.is_some(), ..SHARED };
         }
-        Segment { most_m, ..SHARED }
+        LayoutSegment { most_m, ..SHARED }
     }
 
     /// Divides the list of the whole road, from left to right in the direction of `own`, into the lanes of that direction and
@@ -169,7 +170,7 @@ impl Builder<'_> {
     }
 
     /// The lanes of one direction, from left to right in direction of travel. `count` 0 means unknown.
-    fn lanes(&self, direction: Direction, tags: &LaneTags, count: u8) -> Vec<Segment> {
+    fn lanes(&self, direction: Direction, tags: &LaneTags, count: u8) -> Vec<LayoutSegment> {
         let number = match count.max(tags.listed) {
             0 => self.class.lanes,
             number => number,
@@ -177,10 +178,10 @@ impl Builder<'_> {
         let most_m = tags.most_m(number);
         let lane = |at| {
             let width_m = tags.width_m(at);
-            let lane = Segment::new(Some(direction), Use::Lane(direction));
-            Segment { width_m, listed: width_m.is_some(), most_m: most_m.filter(|_| width_m.is_none()), ..lane }
+            let lane = LayoutSegment::new(Some(direction), Use::Lane(direction));
+            LayoutSegment { width_m, listed: width_m.is_some(), most_m: most_m.filter(|_| width_m.is_none()), ..lane }
         };
-        let mut lanes: Vec<Segment> = (0..usize::from(number)).map(lane).collect();
+        let mut lanes: Vec<LayoutSegment> = (0..usize::from(number)).map(lane).collect();
         if tags.listed > 0 {
             self.close(&mut lanes, tags, count);
         }
@@ -194,7 +195,7 @@ impl Builder<'_> {
 
     /// Closes listed lanes. `lanes` excludes cycle lanes and lane lists include them, so the difference is the number of
     /// cycle lanes.
-    fn close(&self, lanes: &mut [Segment], tags: &LaneTags, count: u8) {
+    fn close(&self, lanes: &mut [LayoutSegment], tags: &LaneTags, count: u8) {
         let shorter = tags.listed < count;
         let listed = usize::from(tags.listed);
         let all_closed = shorter && (0..listed).all(|at| tags.is_closed(at));
@@ -224,7 +225,10 @@ impl Builder<'_> {
     }
 
     /// The lanes of one direction (in direction of travel) from the kerb to the middle.
-    fn lanes_from_kerb<'l>(&self, lanes: &'l mut [Segment]) -> Box<dyn Iterator<Item = &'l mut Segment> + 'l> {
+    fn lanes_from_kerb<'l>(
+        &self,
+        lanes: &'l mut [LayoutSegment],
+    ) -> Box<dyn Iterator<Item = &'l mut LayoutSegment> + 'l> {
         if self.side == TrafficSide::Left { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
     }
 }

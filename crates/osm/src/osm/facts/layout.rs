@@ -20,7 +20,7 @@ pub(super) enum Use {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Segment {
+pub(super) struct LayoutSegment {
     /// Width, metres. `None` until the carriageway has been shared out.
     pub(super) width_m: Option<f32>,
     /// What the width does not exceed, metres: a list's width that may be this lane's.
@@ -32,16 +32,16 @@ pub(super) struct Segment {
     pub(super) used: Use,
 }
 
-impl Segment {
+impl LayoutSegment {
     /// A part of unknown width.
-    pub(super) const fn new(of: Option<Direction>, used: Use) -> Segment {
-        Segment { width_m: None, most_m: None, listed: false, of, used }
+    pub(super) const fn new(of: Option<Direction>, used: Use) -> LayoutSegment {
+        LayoutSegment { width_m: None, most_m: None, listed: false, of, used }
     }
 
     /// The part with its share of a carriageway, unless its width is known.
-    pub(super) fn with_share(self, share_m: f32) -> Segment {
+    pub(super) fn with_share(self, share_m: f32) -> LayoutSegment {
         let share_m = self.most_m.map_or(share_m, |most_m| most_m.min(share_m));
-        Segment { width_m: self.width_m.or(Some(share_m)), ..self }
+        LayoutSegment { width_m: self.width_m.or(Some(share_m)), ..self }
     }
 
     pub(super) fn is_open_to(&self, direction: Direction) -> bool {
@@ -50,14 +50,14 @@ impl Segment {
 }
 
 /// One lane for both directions by turns.
-pub(super) const SHARED: Segment = Segment::new(None, Use::Shared);
+pub(super) const SHARED: LayoutSegment = LayoutSegment::new(None, Use::Shared);
 
 pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction: None, carriageway: None };
 
 /// The parts of the road from the left of the way's node order to the right.
 #[derive(Debug, Default)]
-pub(super) struct Layout {
-    pub(super) segments: Vec<Segment>,
+pub(super) struct RoadLayout {
+    pub(super) segments: Vec<LayoutSegment>,
     /// Evidence of the whole carriageway, and of its division into lanes.
     pub(super) whole: Option<WidthSource>,
     pub(super) divided: Option<WidthSource>,
@@ -66,7 +66,7 @@ pub(super) struct Layout {
     pub(super) placement: Placement,
 }
 
-impl Layout {
+impl RoadLayout {
     /// Left edges of the segments across the way's line, and the last right edge. Metres, positive to the left of the
     /// node order.
     fn positions(&self) -> Vec<f32> {
@@ -128,7 +128,7 @@ impl Layout {
             let listed = inwards[first..=last].iter().all(|&at| self.segments[at].listed);
             strip(first, last, self.listed.filter(|_| listed).unwrap_or(divided))
         };
-        let run = |from: usize, fits: &dyn Fn(&Segment) -> bool| {
+        let run = |from: usize, fits: &dyn Fn(&LayoutSegment) -> bool| {
             let after = inwards[from..].iter().take_while(|&&at| fits(&self.segments[at])).count();
             let before = inwards[..from].iter().rev().take_while(|&&at| fits(&self.segments[at])).count();
             (from - before, from + after - 1)

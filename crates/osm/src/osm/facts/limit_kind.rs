@@ -8,7 +8,7 @@ const SLACK: f64 = 1e-3;
 
 /// The quantity that a limit bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum LimitKind {
     /// Height, metres.
     Height,
     /// Gross mass of the combination, tonnes.
@@ -21,15 +21,15 @@ pub enum Kind {
     Width,
 }
 
-impl Kind {
+impl LimitKind {
     /// The kind of a key of a limit, without what follows its first colon.
-    pub(super) fn of_key(head: &str) -> Option<Kind> {
+    pub(super) fn of_key(head: &str) -> Option<LimitKind> {
         Some(match head {
-            "maxheight" => Kind::Height,
-            "maxweight" | "maxweightrating" | "maxgcweight" | "maxgcweightrating" => Kind::Weight,
-            "maxaxleload" => Kind::AxleLoad,
-            "maxlength" => Kind::Length,
-            "maxwidth" => Kind::Width,
+            "maxheight" => LimitKind::Height,
+            "maxweight" | "maxweightrating" | "maxgcweight" | "maxgcweightrating" => LimitKind::Weight,
+            "maxaxleload" => LimitKind::AxleLoad,
+            "maxlength" => LimitKind::Length,
+            "maxwidth" => LimitKind::Width,
             _ => return None,
         })
     }
@@ -37,22 +37,24 @@ impl Kind {
     /// The kind of a tag that is a limit of the whole road at all times. The key may name a class or a direction, too, before or after:
     /// `maxheight`, `maxweight:hgv`, `hgv:maxweight:forward`. Lists by lane, conditions and remarks (`source:maxheight`) are none.
     #[must_use]
-    pub fn of_tag(key: &str) -> Option<Kind> {
+    pub fn of_tag(key: &str) -> Option<LimitKind> {
         let other = |part: &str| matches!(part, "lanes" | "conditional") || REMARKS.contains(&part);
         if !key.contains("max") || key.split(':').any(other) {
             return None;
         }
-        key.split(':').find_map(Kind::of_key)
+        key.split(':').find_map(LimitKind::of_key)
     }
 
     /// The kind of a word in a condition, as in `no @ (weight>7.5)`.
-    pub(super) fn of_condition(word: &str) -> Option<Kind> {
+    pub(super) fn of_condition(word: &str) -> Option<LimitKind> {
         Some(match word {
-            "height" => Kind::Height,
-            "weight" | "weightrating" | "maxweight" | "maxweightrating" | "gcweight" | "gcweightrating" => Kind::Weight,
-            "axleload" => Kind::AxleLoad,
-            "length" => Kind::Length,
-            "width" => Kind::Width,
+            "height" => LimitKind::Height,
+            "weight" | "weightrating" | "maxweight" | "maxweightrating" | "gcweight" | "gcweightrating" => {
+                LimitKind::Weight
+            }
+            "axleload" => LimitKind::AxleLoad,
+            "length" => LimitKind::Length,
+            "width" => LimitKind::Width,
             _ => return None,
         })
     }
@@ -60,11 +62,11 @@ impl Kind {
     /// The greatest value that a sign shows. Greater ones are refused, because their unit is missing (kilograms, centimetres).
     fn greatest(self) -> f32 {
         match self {
-            Kind::Height => 15.0,
-            Kind::Weight => 500.0,
-            Kind::AxleLoad => 60.0,
-            Kind::Length => 150.0,
-            Kind::Width => 30.0,
+            LimitKind::Height => 15.0,
+            LimitKind::Weight => 500.0,
+            LimitKind::AxleLoad => 60.0,
+            LimitKind::Length => 150.0,
+            LimitKind::Width => 30.0,
         }
     }
 
@@ -72,8 +74,8 @@ impl Kind {
     #[must_use]
     pub fn read(self, text: &str) -> Limit {
         let number = match self {
-            Kind::Weight | Kind::AxleLoad => value::tonnes,
-            Kind::Height | Kind::Length | Kind::Width => value::metres,
+            LimitKind::Weight | LimitKind::AxleLoad => value::tonnes,
+            LimitKind::Height | LimitKind::Length | LimitKind::Width => value::metres,
         };
         value::limit(text, number, self.greatest())
     }
@@ -99,11 +101,11 @@ impl Kind {
 
     fn slot(self, legal: &mut Legal) -> &mut Limit {
         match self {
-            Kind::Height => &mut legal.max_height,
-            Kind::Weight => &mut legal.max_weight,
-            Kind::AxleLoad => &mut legal.max_axle_load,
-            Kind::Length => &mut legal.max_length,
-            Kind::Width => &mut legal.max_width,
+            LimitKind::Height => &mut legal.max_height,
+            LimitKind::Weight => &mut legal.max_weight,
+            LimitKind::AxleLoad => &mut legal.max_axle_load,
+            LimitKind::Length => &mut legal.max_length,
+            LimitKind::Width => &mut legal.max_width,
         }
     }
 }

@@ -3,9 +3,9 @@
 //! If several tags limit the same quantity, the strictest counts. What depends on the vehicle or the time stands here as "not for through
 //! traffic" at most; the rules beside it decide ([`super::legal`]).
 
-use crate::osm::facts::access::{Access, is_access_key, permission};
+use crate::osm::facts::access::{AccessTags, is_access_key, permission};
 use crate::osm::facts::legal::RuleTags;
-use crate::osm::facts::limit_kind::Kind;
+use crate::osm::facts::limit_kind::LimitKind;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::{Direction, Legal, Limit, Oneway, Permission};
 
@@ -25,7 +25,7 @@ impl Limit {
 #[derive(Debug, Default)]
 pub(super) struct LegalTags<'t> {
     limits: [Legal; 2],
-    pub(super) access: Access,
+    pub(super) access: AccessTags,
     rules: RuleTags<'t>,
 }
 
@@ -42,7 +42,7 @@ impl<'t> LegalTags<'t> {
         let conditional = suffix == "conditional" || suffix.ends_with(":conditional");
         let plain =
             if conditional { suffix.strip_suffix("conditional").unwrap_or("").trim_end_matches(':') } else { suffix };
-        if let Some(kind) = Kind::of_key(head) {
+        if let Some(kind) = LimitKind::of_key(head) {
             self.take_limit(kind, plain, text, conditional, notes);
         } else if is_access_key(head) {
             if conditional {
@@ -53,7 +53,7 @@ impl<'t> LegalTags<'t> {
         }
     }
 
-    fn take_limit(&mut self, kind: Kind, suffix: &str, text: &str, conditional: bool, notes: &mut Notes) {
+    fn take_limit(&mut self, kind: LimitKind, suffix: &str, text: &str, conditional: bool, notes: &mut Notes) {
         let mut directions = [true; 2];
         let mut by_lane = false;
         for part in suffix.split(':').filter(|part| !part.is_empty()) {
@@ -77,7 +77,7 @@ impl<'t> LegalTags<'t> {
         }
     }
 
-    fn limit(&mut self, kind: Kind, limit: Limit, directions: [bool; 2], notes: &mut Notes) {
+    fn limit(&mut self, kind: LimitKind, limit: Limit, directions: [bool; 2], notes: &mut Notes) {
         if limit == Limit::Unreadable {
             notes.add(Note::BadLimit);
         }
@@ -153,9 +153,9 @@ pub(super) fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
 }
 
 /// The comparison, if a condition is exactly one comparison with a dimension.
-fn dimension_condition(condition: &str) -> Option<(Kind, Limit)> {
+fn dimension_condition(condition: &str) -> Option<(LimitKind, Limit)> {
     let (word, bound) = condition.split_once('>')?;
-    let kind = Kind::of_condition(word.trim())?;
+    let kind = LimitKind::of_condition(word.trim())?;
     // The rest is a number with its unit, or more than a comparison (`weight>7.5 AND 22:00-06:00`), which stays
     // undecided.
     match kind.read(bound.trim_start_matches('=')) {

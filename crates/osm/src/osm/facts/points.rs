@@ -3,7 +3,7 @@
 use crate::osm::facts::keys::PASSAGE_KEYS;
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Direction, Limit, Oneway, PointFacts, Tags, told, value};
+use crate::osm::facts::{Direction, Limit, Oneway, PointFacts, Tags, tag_lines, value};
 
 /// Passable width of a choker or chicane without a tagged width, metres: one lane of a minor main road. Assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
@@ -118,9 +118,9 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
     let behind = behind.into_iter().chain(PASSAGE_KEYS.map(|key| (key, passage_m.is_some())));
     let mut lines = String::new();
     behind.filter(|row| row.1).filter_map(|(key, _)| Some((key, get(key)?))).for_each(|(key, value)| {
-        told::add(&mut lines, key, value);
+        tag_lines::add(&mut lines, key, value);
     });
-    legal.tags = told::merged(legal.tags.as_deref(), (!lines.is_empty()).then_some(lines.as_str()));
+    legal.tags = tag_lines::merged(legal.tags.as_deref(), (!lines.is_empty()).then_some(lines.as_str()));
     let facts = PointFacts { legal, passage_m, barred };
     (facts != PointFacts::default()).then_some(facts)
 }

@@ -144,11 +144,11 @@ pub(super) enum Mark {
 
 /// A set of [`Mark`]s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub(super) struct Marks(u8);
+pub(super) struct MarkSet(u8);
 
-impl Marks {
-    pub(super) fn of(marks: &[(Mark, bool)]) -> Marks {
-        Marks(marks.iter().filter(|(_, set)| *set).map(|(mark, _)| *mark as u8).sum())
+impl MarkSet {
+    pub(super) fn of(marks: &[(Mark, bool)]) -> MarkSet {
+        MarkSet(marks.iter().filter(|(_, set)| *set).map(|(mark, _)| *mark as u8).sum())
     }
 }
 
@@ -160,7 +160,7 @@ pub(super) struct SectionTags {
     pub(super) source: WidthSource,
     /// `maxwidth:physical`
     pub(super) physical: Option<Millimetres>,
-    pub(super) marks: Marks,
+    pub(super) marks: MarkSet,
     /// `lanes`; 0 if untagged.
     pub(super) lanes: u8,
     /// `lanes:both_ways`

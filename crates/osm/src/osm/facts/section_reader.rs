@@ -6,7 +6,7 @@
 use crate::osm::facts::kerb_reader::KerbReader;
 use crate::osm::facts::lane_lists::{Lists, list_index};
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::section::{LaneLine, LaneTags, Mark, Marks, Millimetres, Placement, SectionTags};
+use crate::osm::facts::section::{LaneLine, LaneTags, Mark, MarkSet, Millimetres, Placement, SectionTags};
 use crate::osm::facts::value::{self, readable};
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{Direction, Oneway, WidthSource};
@@ -223,7 +223,7 @@ impl SectionReader {
             carriageway,
             source,
             physical: self.physical,
-            marks: Marks::of(&[
+            marks: MarkSet::of(&[
                 (Mark::Unreadable, self.unreadable && carriageway.is_none()),
                 (Mark::Narrow, self.narrow),
                 (Mark::Reversible, sharing == Sharing::Reversible),

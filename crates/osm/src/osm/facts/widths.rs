@@ -7,7 +7,7 @@
 //! assumed width replaces it.
 
 use crate::osm::facts::country::{Jurisdiction, TrafficSide};
-use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
+use crate::osm::facts::layout::{LayoutSegment, NO_SECTION, RoadLayout, SHARED, Use, kerb_on_the_left_of_the_way};
 use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
 use crate::osm::facts::section::{Decimetres, Kerb, Mark, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
 use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
@@ -95,11 +95,11 @@ impl Builder<'_> {
     /// if nothing is tagged.
     pub(super) fn lay_out(
         &self,
-        mut lanes: Vec<Segment>,
+        mut lanes: Vec<LayoutSegment>,
         known: bool,
         assumed_m: Option<f32>,
         traffic: Traffic,
-    ) -> Layout {
+    ) -> RoadLayout {
         let tagged = self.available(&lanes);
         if let Some(room) = &tagged
             && given_m(&lanes) > room.width_m + LISTED_SLACK_M
@@ -112,12 +112,12 @@ impl Builder<'_> {
         }
         // What cannot be read may say less than an assumed width.
         if self.tags.is(Mark::Unreadable) {
-            return Layout::default();
+            return RoadLayout::default();
         }
         self.give_cycle_lanes_width(&mut lanes);
         if let Some(room) = tagged {
             if room.width_m <= 0.0 {
-                return Layout::default();
+                return RoadLayout::default();
             }
             if let Some(layout) = self.share_out(&lanes, &room, known, traffic) {
                 return self.limited(layout);
@@ -135,7 +135,7 @@ impl Builder<'_> {
     }
 
     /// Shares a tagged width out among the lanes. `None` if the lanes would be too wide to be the tagged ones.
-    fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, traffic: Traffic) -> Option<Layout> {
+    fn share_out(&self, lanes: &[LayoutSegment], room: &Room, known: bool, traffic: Traffic) -> Option<RoadLayout> {
         let left_m = room.width_m - given_m(lanes);
         let each_m = left_m / unknown(lanes);
         let shared_already = lanes.iter().any(|lane| lane.used == Use::Shared);
@@ -171,15 +171,24 @@ impl Builder<'_> {
 
     /// A road too narrow for its lanes gets one lane, by turns for both directions of a two-way road. If lanes are
     /// tagged, one of the two tags is wrong. It may be the width, so the lane is no wider than an assumed one.
-    fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, traffic: Traffic) -> Layout {
-        let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
+    fn one_for_all(
+        &self,
+        lanes: &[LayoutSegment],
+        left_m: f32,
+        room: &Room,
+        known: bool,
+        traffic: Traffic,
+    ) -> RoadLayout {
+        let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else {
+            return RoadLayout::default();
+        };
         let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
         let most_m = lanes.iter().filter_map(|lane| lane.most_m).reduce(f32::min);
         let width_m = most_m.map_or(width_m, |most_m| most_m.min(width_m));
         if width_m <= 0.0 {
-            return Layout::default();
+            return RoadLayout::default();
         }
-        let one = Segment { width_m: Some(width_m), ..if traffic == Traffic::TwoWay { SHARED } else { *open } };
+        let one = LayoutSegment { width_m: Some(width_m), ..if traffic == Traffic::TwoWay { SHARED } else { *open } };
         let source = if width_m < left_m { room.source.min(WidthSource::FromLanes) } else { room.source };
         let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
         let whole = Room { source, ..*room };
@@ -187,7 +196,7 @@ impl Builder<'_> {
     }
 
     /// The tagged carriageway less what is not for traffic, and its evidence.
-    fn available(&self, lanes: &[Segment]) -> Option<Room> {
+    fn available(&self, lanes: &[LayoutSegment]) -> Option<Room> {
         let carriageway_m = self.tags.carriageway?.metres();
         let taken_m =
             |shoulders| -> f32 { (0..2).map(|side| given_m(&self.kerb_segments(side, lanes, shoulders))).sum() };
@@ -206,7 +215,7 @@ impl Builder<'_> {
     }
 
     /// The parts beside the lanes on one side (0: left of the node order), from the edge inwards.
-    fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: Shoulders) -> Vec<Segment> {
+    fn kerb_segments(&self, side: usize, lanes: &[LayoutSegment], shoulders: Shoulders) -> Vec<LayoutSegment> {
         let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
         let rule = &self.kerb_rule;
         let parking_m = match parking {
@@ -224,19 +233,19 @@ impl Builder<'_> {
             (if shoulders == Shoulders::Within { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
         ] {
             if dm > 0 {
-                inwards.push(Segment { width_m: Some(metres(dm, default_m)), ..Segment::new(None, used) });
+                inwards.push(LayoutSegment { width_m: Some(metres(dm, default_m)), ..LayoutSegment::new(None, used) });
             }
         }
         inwards
     }
 
-    fn give_cycle_lanes_width(&self, lanes: &mut [Segment]) {
+    fn give_cycle_lanes_width(&self, lanes: &mut [LayoutSegment]) {
         for lane in lanes.iter_mut().filter(|lane| lane.used == Use::Aside) {
             lane.width_m = lane.width_m.or(Some(self.kerb_rule.cycle_lane_m));
         }
     }
 
-    fn with_kerbs(&self, lanes: Vec<Segment>, room: &Room, divided: WidthSource) -> Layout {
+    fn with_kerbs(&self, lanes: Vec<LayoutSegment>, room: &Room, divided: WidthSource) -> RoadLayout {
         let mut segments = self.kerb_segments(0, &lanes, room.shoulders);
         let right = self.kerb_segments(1, &lanes, room.shoulders);
         segments.extend(lanes);
@@ -244,19 +253,19 @@ impl Builder<'_> {
         self.finish(segments, room.source, divided)
     }
 
-    fn finish(&self, segments: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
+    fn finish(&self, segments: Vec<LayoutSegment>, whole: WidthSource, divided: WidthSource) -> RoadLayout {
         // The way's line is between two placements. The strips lie as around the middle, with weaker evidence.
         let weakest =
             if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
         let placement = self.tags.placement;
         let [whole, divided, listed] = [whole, divided, self.listed_source()].map(|source| Some(source.min(weakest)));
-        Layout { segments, whole, divided, listed, placement }
+        RoadLayout { segments, whole, divided, listed, placement }
     }
 
     /// Applies `maxwidth:physical` as an upper bound of the paved width. All lanes shrink alike, or one lane is left.
-    fn limited(&self, mut layout: Layout) -> Layout {
+    fn limited(&self, mut layout: RoadLayout) -> RoadLayout {
         let Some(most_m) = self.tags.physical.map(Millimetres::metres) else { return layout };
-        let paved = |s: &Segment| s.used != Use::Aside;
+        let paved = |s: &LayoutSegment| s.used != Use::Aside;
         let paved_m: f32 = layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).sum();
         if paved_m <= most_m {
             return layout;
@@ -277,14 +286,14 @@ impl Builder<'_> {
             (true, true) => Use::Shared,
             (true, false) => Use::Lane(Direction::Forward),
             (false, true) => Use::Lane(Direction::Backward),
-            (false, false) => return Layout::default(),
+            (false, false) => return RoadLayout::default(),
         };
         // No lane for all is wider than what a list gives one of them.
         let listed_m = layout.segments.iter().filter(|s| s.listed).filter_map(|s| s.width_m);
         let bounds_m = listed_m.chain(layout.segments.iter().filter_map(|s| s.most_m));
         let width_m = bounds_m.fold(most_m.min(self.lane_m), f32::min);
-        let one = Segment { width_m: Some(width_m), ..Segment::new(None, used) };
-        Layout { segments: vec![one], placement: Placement::Middle, ..layout }
+        let one = LayoutSegment { width_m: Some(width_m), ..LayoutSegment::new(None, used) };
+        RoadLayout { segments: vec![one], placement: Placement::Middle, ..layout }
     }
 }
 
@@ -296,11 +305,11 @@ struct Room {
     shoulders: Shoulders,
 }
 
-fn given_m(segments: &[Segment]) -> f32 {
+fn given_m(segments: &[LayoutSegment]) -> f32 {
     segments.iter().filter_map(|segment| segment.width_m).sum()
 }
 
 /// Number of segments without a width.
-fn unknown(segments: &[Segment]) -> f32 {
+fn unknown(segments: &[LayoutSegment]) -> f32 {
     segments.iter().filter(|segment| segment.width_m.is_none()).count() as f32
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::osm::backdrop::{self, Backdrop, BackdropShape};
-use crate::osm::changes::{Changes, Kind};
+use crate::osm::changes::{Changes, ObjectKind};
 use crate::osm::facts::BackdropForm;
 use crate::osm::read_account::BackdropTally;
 use crate::osm::{LonLat, NodeId, NodeTable};
@@ -12,12 +12,12 @@ use crate::osm::{LonLat, NodeId, NodeTable};
 use super::backdrop_objects::{AreaRelation, BackdropWay, PlaceNode};
 use super::block::Block;
 use super::duplicates::keep_last;
-use super::error::Problem;
+use super::error::PbfProblem;
 use super::relations;
 use super::wire::Cursor;
 
 /// The multipolygons of a block. Those that are `changed` are passed over.
-pub(super) fn areas(block: &Block<'_>, changed: &Changes) -> Result<Vec<AreaRelation>, Problem> {
+pub(super) fn areas(block: &Block<'_>, changed: &Changes) -> Result<Vec<AreaRelation>, PbfProblem> {
     let mut found = Vec::new();
     for group in &block.groups {
         let mut cursor = Cursor::new(group);
@@ -31,7 +31,7 @@ pub(super) fn areas(block: &Block<'_>, changed: &Changes) -> Result<Vec<AreaRela
 }
 
 /// Whether a block holds no relation, judged by the kinds of its objects.
-pub(super) fn no_relations(bytes: &[u8]) -> Result<bool, Problem> {
+pub(super) fn no_relations(bytes: &[u8]) -> Result<bool, PbfProblem> {
     for group in Block::parse(bytes)?.groups {
         let mut cursor = Cursor::new(group);
         while let Some(field) = cursor.field()? {
@@ -87,7 +87,7 @@ impl AreaGatherer {
                 placed_rings(&backdrop::rings(&members)?, nodes)
             };
             if let Some(shape) = area(of(false).zip(of(true)), &mut tally) {
-                all.push(Backdrop { kind, object: (Kind::Relation, id), name, shape });
+                all.push(Backdrop { kind, object: (ObjectKind::Relation, id), name, shape });
             }
         }
         for BackdropWay { id, kind, name, refs } in ways {
@@ -97,11 +97,11 @@ impl AreaGatherer {
             } else {
                 line(&refs, nodes, &mut tally)
             };
-            all.extend(shape.map(|shape| Backdrop { kind, object: (Kind::Way, id), name, shape }));
+            all.extend(shape.map(|shape| Backdrop { kind, object: (ObjectKind::Way, id), name, shape }));
         }
         all.extend(places.into_iter().map(|PlaceNode { id, kind, name, place }| Backdrop {
             kind,
-            object: (Kind::Node, id.get()),
+            object: (ObjectKind::Node, id.get()),
             name: Some(name),
             shape: BackdropShape::Place(place),
         }));

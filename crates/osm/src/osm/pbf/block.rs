@@ -7,7 +7,7 @@
 use crate::osm::LonLat;
 
 use super::{
-    error::{ObjectId, Problem},
+    error::{ObjectId, PbfProblem},
     wire::{Cursor, Packed},
 };
 
@@ -23,7 +23,7 @@ pub(super) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    pub(super) fn parse(bytes: &'a [u8]) -> Result<Self, Problem> {
+    pub(super) fn parse(bytes: &'a [u8]) -> Result<Self, PbfProblem> {
         let mut strings = Strings { texts: Vec::new() };
         let mut groups = Vec::new();
         let mut grid = Grid { granularity: 100, lat_offset: 0, lon_offset: 0 };
@@ -47,25 +47,25 @@ impl<'a> Block<'a> {
 
 /// Refuses a count above the limit.
 #[inline]
-pub(super) fn limit(count: usize, what: &'static str) -> Result<(), Problem> {
+pub(super) fn limit(count: usize, what: &'static str) -> Result<(), PbfProblem> {
     if count <= MAX_ENTITIES {
         return Ok(());
     }
-    Err(Problem::Size { what, found: count as i64, allowed: "at most 1,000,000" })
+    Err(PbfProblem::Size { what, found: count as i64, allowed: "at most 1,000,000" })
 }
 
 /// Refuses an object with too many tags. 32 MiB of two zeros each deflate to 32 KB, and are half a gigabyte of tags.
 #[inline]
-pub(super) fn limit_tags(count: usize) -> Result<(), Problem> {
+pub(super) fn limit_tags(count: usize) -> Result<(), PbfProblem> {
     limit(count, "the number of tags of an object")
 }
 
-fn granularity(found: u64) -> Result<i64, Problem> {
+fn granularity(found: u64) -> Result<i64, PbfProblem> {
     let found = found as i64;
     if (1..=i64::from(i32::MAX)).contains(&found) {
         return Ok(found);
     }
-    Err(Problem::Size { what: "granularity", found, allowed: "1 to 2147483647 nanodegrees" })
+    Err(PbfProblem::Size { what: "granularity", found, allowed: "1 to 2147483647 nanodegrees" })
 }
 
 /// A block's string table. An entry that is not UTF-8 is an error only if a tag uses it, because user names are not
@@ -83,7 +83,7 @@ impl<'a> Strings<'a> {
 }
 
 impl<'a> Strings<'a> {
-    fn extend(&mut self, table: &'a [u8]) -> Result<(), Problem> {
+    fn extend(&mut self, table: &'a [u8]) -> Result<(), PbfProblem> {
         let mut cursor = Cursor::new(table);
         while let Some(field) = cursor.field()? {
             if field.number == 1 {
@@ -100,12 +100,12 @@ impl<'a> Strings<'a> {
     }
 
     #[inline]
-    pub(super) fn text(&self, index: u64, object: ObjectId) -> Result<&'a str, Problem> {
+    pub(super) fn text(&self, index: u64, object: ObjectId) -> Result<&'a str, PbfProblem> {
         let found = usize::try_from(index).ok().and_then(|i| self.texts.get(i));
         match found {
             Some(Some(text)) => Ok(text),
-            Some(None) => Err(Problem::Utf8 { object }),
-            None => Err(Problem::StringIndex { object, index, strings: self.texts.len() }),
+            Some(None) => Err(PbfProblem::Utf8 { object }),
+            None => Err(PbfProblem::StringIndex { object, index, strings: self.texts.len() }),
         }
     }
 
@@ -116,7 +116,7 @@ impl<'a> Strings<'a> {
         values: &Packed<'_>,
         object: ObjectId,
         tags: &mut Vec<(&'a str, &'a str)>,
-    ) -> Result<(), Problem> {
+    ) -> Result<(), PbfProblem> {
         tags.clear();
         let (mut keys, mut values) = (keys.cursor(), values.cursor());
         while !keys.is_empty() && !values.is_empty() {
@@ -126,7 +126,7 @@ impl<'a> Strings<'a> {
         if keys.is_empty() && values.is_empty() {
             return Ok(());
         }
-        Err(Problem::Lengths { object, what: "keys and values" })
+        Err(PbfProblem::Lengths { object, what: "keys and values" })
     }
 }
 
@@ -160,13 +160,13 @@ impl Grid {
 
 /// Adds a delta to the previous value.
 #[inline]
-pub(super) fn add(last: &mut i64, difference: i64, object: ObjectId, what: &'static str) -> Result<i64, Problem> {
-    *last = last.checked_add(difference).ok_or(Problem::Overflow { object, what })?;
+pub(super) fn add(last: &mut i64, difference: i64, object: ObjectId, what: &'static str) -> Result<i64, PbfProblem> {
+    *last = last.checked_add(difference).ok_or(PbfProblem::Overflow { object, what })?;
     Ok(*last)
 }
 
 /// `visible` of an `Info`; the default is true.
-pub(super) fn visible(info: &[u8]) -> Result<bool, Problem> {
+pub(super) fn visible(info: &[u8]) -> Result<bool, PbfProblem> {
     let mut visible = true;
     let mut cursor = Cursor::new(info);
     while let Some(field) = cursor.field()? {
@@ -178,9 +178,9 @@ pub(super) fn visible(info: &[u8]) -> Result<bool, Problem> {
 }
 
 /// Refuses a second dense group in one group: the format does not say whether its deltas continue from the first.
-pub(super) fn limit_to_one(dense_groups: usize) -> Result<(), Problem> {
+pub(super) fn limit_to_one(dense_groups: usize) -> Result<(), PbfProblem> {
     if dense_groups <= 1 {
         return Ok(());
     }
-    Err(Problem::Size { what: "the number of dense nodes in one group", found: dense_groups as i64, allowed: "1" })
+    Err(PbfProblem::Size { what: "the number of dense nodes in one group", found: dense_groups as i64, allowed: "1" })
 }

@@ -9,16 +9,16 @@ use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock};
 use protobuf::Message;
 
 use super::block::Block;
-use super::error::{Problem, ReadError};
-use super::frame::{Frame, Kind, Source};
+use super::error::{PbfProblem, ReadError};
+use super::frame::{BlobKind, BlobPosition, BlobSource};
 use super::inflate::Inflater;
 use super::{header, nodes};
 use crate::osm::facts::LimitKind;
 
 /// An open extract.
 pub struct Blobs {
-    source: Source,
-    frames: std::vec::IntoIter<Frame>,
+    source: BlobSource,
+    frames: std::vec::IntoIter<BlobPosition>,
     blake3: String,
     inflater: Inflater,
 }
@@ -29,7 +29,7 @@ pub struct Blob {
     pub bytes: Vec<u8>,
     /// Offset in the file of its end.
     pub end: u64,
-    frame: Frame,
+    frame: BlobPosition,
 }
 
 /// Contents of a blob.
@@ -51,7 +51,7 @@ impl Blobs {
     /// # Errors
     /// [`ReadError`] if the file cannot be read or is no such file.
     pub fn open(path: &Path, progress: &dyn Fn(u64, u64)) -> Result<Self, ReadError> {
-        let mut source = Source::open(path)?;
+        let mut source = BlobSource::open(path)?;
         let total = source.len;
         let (frames, hash) = source.frames(|done| progress(done, total))?;
         Ok(Self {
@@ -94,11 +94,11 @@ impl Blobs {
     /// [`ReadError`] if the blob is damaged.
     pub fn contents(&mut self, blob: &Blob) -> Result<Contents, ReadError> {
         let mut read = || {
-            if blob.frame.kind == Kind::Other {
+            if blob.frame.kind == BlobKind::Other {
                 return Ok(Contents::Other);
             }
             let (bytes, _) = self.inflater.inflate(&blob.bytes)?;
-            if blob.frame.kind == Kind::Header {
+            if blob.frame.kind == BlobKind::Header {
                 header::parse(bytes)?;
                 return Ok(Contents::Header(Box::new(message(bytes, "OSMHeader")?)));
             }
@@ -112,6 +112,6 @@ impl Blobs {
     }
 }
 
-fn message<M: Message>(bytes: &[u8], what: &'static str) -> Result<M, Problem> {
-    M::parse_from_bytes(bytes).map_err(|error| Problem::Message { what, detail: error.to_string() })
+fn message<M: Message>(bytes: &[u8], what: &'static str) -> Result<M, PbfProblem> {
+    M::parse_from_bytes(bytes).map_err(|error| PbfProblem::Message { what, detail: error.to_string() })
 }

@@ -15,7 +15,7 @@ pub struct ReadError {
     pub offset: Option<u64>,
     /// The fault.
     #[source]
-    pub problem: Problem,
+    pub problem: PbfProblem,
 }
 
 impl fmt::Display for ReadError {
@@ -31,7 +31,7 @@ impl fmt::Display for ReadError {
 /// The fault of a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum Problem {
+pub enum PbfProblem {
     /// An error of the operating system.
     #[error("cannot read: {0}")]
     Io(io::Error),
@@ -168,7 +168,7 @@ impl fmt::Display for ObjectId {
     }
 }
 
-impl Problem {
+impl PbfProblem {
     /// What the user can do.
     #[must_use]
     pub fn way_out(&self) -> &'static str {

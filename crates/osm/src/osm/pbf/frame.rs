@@ -11,7 +11,7 @@ use std::{
 };
 
 use super::{
-    error::{Problem, ReadError},
+    error::{PbfProblem, ReadError},
     inflate::MAX_INFLATED,
     wire::Cursor,
 };
@@ -21,7 +21,7 @@ const MAX_HEADER: usize = 64 << 10;
 
 /// The open file, and its size and time when it was opened.
 #[derive(Debug)]
-pub(super) struct Source {
+pub(super) struct BlobSource {
     file: File,
     path: PathBuf,
     pub(super) len: u64,
@@ -30,7 +30,7 @@ pub(super) struct Source {
 
 /// Type of a blob, from its header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum BlobKind {
     Header,
     Data,
     /// To be skipped, as the format demands.
@@ -39,33 +39,33 @@ pub(super) enum Kind {
 
 /// Place of a blob in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Frame {
+pub(super) struct BlobPosition {
     /// Offset of the four-byte length, which errors name.
     pub(super) offset: u64,
     /// Offset of the `Blob` message.
     pub(super) body: u64,
     /// Size of the `Blob` message, bytes.
     pub(super) size: usize,
-    pub(super) kind: Kind,
+    pub(super) kind: BlobKind,
 }
 
-impl Source {
+impl BlobSource {
     pub(super) fn open(path: &Path) -> Result<Self, ReadError> {
         let at = |problem| ReadError { path: path.to_owned(), offset: None, problem };
         // Tested before opening: opening a pipe without a writer would block for ever.
-        let found = std::fs::metadata(path).map_err(|error| at(Problem::Io(error)))?;
+        let found = std::fs::metadata(path).map_err(|error| at(PbfProblem::Io(error)))?;
         if !found.is_file() {
-            return Err(at(Problem::NotAFile));
+            return Err(at(PbfProblem::NotAFile));
         }
-        let file = File::open(path).map_err(|error| at(Problem::Io(error)))?;
-        let metadata = file.metadata().map_err(|error| at(Problem::Io(error)))?;
+        let file = File::open(path).map_err(|error| at(PbfProblem::Io(error)))?;
+        let metadata = file.metadata().map_err(|error| at(PbfProblem::Io(error)))?;
         if metadata.len() == 0 {
-            return Err(at(Problem::Empty));
+            return Err(at(PbfProblem::Empty));
         }
         Ok(Self { file, path: path.to_owned(), len: metadata.len(), modified: metadata.modified().ok() })
     }
 
-    pub(super) fn error(&self, offset: Option<u64>, problem: Problem) -> ReadError {
+    pub(super) fn error(&self, offset: Option<u64>, problem: PbfProblem) -> ReadError {
         ReadError { path: self.path.clone(), offset, problem }
     }
 
@@ -74,21 +74,24 @@ impl Source {
         let done = self.file.seek(SeekFrom::Start(offset)).and_then(|_| self.file.read_exact(out));
         done.map_err(|error| {
             let changed = error.kind() == io::ErrorKind::UnexpectedEof;
-            self.error(Some(offset), if changed { Problem::Changed } else { Problem::Io(error) })
+            self.error(Some(offset), if changed { PbfProblem::Changed } else { PbfProblem::Io(error) })
         })
     }
 
     /// Whether the file is unchanged since it was opened.
     pub(super) fn check_unchanged(&self) -> Result<(), ReadError> {
-        let metadata = self.file.metadata().map_err(|error| self.error(None, Problem::Io(error)))?;
+        let metadata = self.file.metadata().map_err(|error| self.error(None, PbfProblem::Io(error)))?;
         if metadata.len() == self.len && metadata.modified().ok() == self.modified {
             return Ok(());
         }
-        Err(self.error(None, Problem::Changed))
+        Err(self.error(None, PbfProblem::Changed))
     }
 
     /// All blobs of the file in order, and the file's blake3 hash.
-    pub(super) fn frames(&mut self, mut progress: impl FnMut(u64)) -> Result<(Vec<Frame>, blake3::Hash), ReadError> {
+    pub(super) fn frames(
+        &mut self,
+        mut progress: impl FnMut(u64),
+    ) -> Result<(Vec<BlobPosition>, blake3::Hash), ReadError> {
         let mut walk = Walk { source: self, at: 0, hasher: blake3::Hasher::new(), buffer: vec![0; 1 << 20] };
         let mut frames = Vec::new();
         while walk.at < walk.source.len {
@@ -103,14 +106,14 @@ impl Source {
 
 /// A walk over the file from its first byte.
 struct Walk<'s> {
-    source: &'s mut Source,
+    source: &'s mut BlobSource,
     at: u64,
     hasher: blake3::Hasher,
     buffer: Vec<u8>,
 }
 
 impl Walk<'_> {
-    fn frame(&mut self) -> Result<Frame, Problem> {
+    fn frame(&mut self) -> Result<BlobPosition, PbfProblem> {
         let offset = self.at;
         let head = self.read(4, "a blob's length")?;
         let found = i64::from(u32::from_be_bytes([head[0], head[1], head[2], head[3]]));
@@ -119,10 +122,10 @@ impl Walk<'_> {
             if offset == 0 {
                 return Err(self.look_alike());
             }
-            return Err(Problem::Size { what: "the length of a BlobHeader", found, allowed: "1 byte to 64 KiB" });
+            return Err(PbfProblem::Size { what: "the length of a BlobHeader", found, allowed: "1 byte to 64 KiB" });
         };
         let (kind, size) = blob_header(self.read(length, "a BlobHeader")?).map_err(|problem| match problem {
-            Problem::Wire(_) | Problem::Missing(_) if offset == 0 => UNKNOWN_FORMAT,
+            PbfProblem::Wire(_) | PbfProblem::Missing(_) if offset == 0 => UNKNOWN_FORMAT,
             other => other,
         })?;
         let body = self.at;
@@ -132,18 +135,18 @@ impl Walk<'_> {
             self.read(piece, "a blob")?;
             left -= piece;
         }
-        Ok(Frame { offset, body, size, kind })
+        Ok(BlobPosition { offset, body, size, kind })
     }
 
     /// The next `n` bytes, at most the buffer's size. They are hashed.
-    fn read(&mut self, n: usize, what: &'static str) -> Result<&[u8], Problem> {
+    fn read(&mut self, n: usize, what: &'static str) -> Result<&[u8], PbfProblem> {
         if self.source.len - self.at < n as u64 {
-            return Err(if self.at < 4 { self.look_alike() } else { Problem::Truncated(what) });
+            return Err(if self.at < 4 { self.look_alike() } else { PbfProblem::Truncated(what) });
         }
-        let bytes = self.buffer.get_mut(..n).ok_or(Problem::Truncated(what))?;
+        let bytes = self.buffer.get_mut(..n).ok_or(PbfProblem::Truncated(what))?;
         self.source.file.read_exact(bytes).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => Problem::Changed,
-            _ => Problem::Io(error),
+            io::ErrorKind::UnexpectedEof => PbfProblem::Changed,
+            _ => PbfProblem::Io(error),
         })?;
         self.hasher.update(bytes);
         self.at += n as u64;
@@ -151,12 +154,12 @@ impl Walk<'_> {
     }
 
     /// The apparent format of a file that does not start like a PBF.
-    fn look_alike(&mut self) -> Problem {
+    fn look_alike(&mut self) -> PbfProblem {
         let mut start = Vec::new();
         let file = &mut self.source.file;
         let read = file.seek(SeekFrom::Start(0)).and_then(|_| file.take(512).read_to_end(&mut start));
         if let Err(error) = read {
-            return Problem::Io(error);
+            return PbfProblem::Io(error);
         }
         let text = String::from_utf8_lossy(&start).to_lowercase();
         let text = text.trim_start_matches('\u{feff}').trim_start();
@@ -173,18 +176,18 @@ impl Walk<'_> {
             _ if text.starts_with('<') => ("XML", "convert it with `osmium cat IN.osm -o OUT.osm.pbf`"),
             _ => return UNKNOWN_FORMAT,
         };
-        Problem::NotPbf { what, remedy }
+        PbfProblem::NotPbf { what, remedy }
     }
 }
 
-const UNKNOWN_FORMAT: Problem = Problem::NotPbf {
+const UNKNOWN_FORMAT: PbfProblem = PbfProblem::NotPbf {
     what: "something else (no BlobHeader at its start)",
     remedy: "give a .osm.pbf file; if this should be one it is damaged: fetch it again",
 };
 
 /// Type and size of the next blob. The message is read in place, because the crate's message cuts `datasize` to 32
 /// bits.
-fn blob_header(message: &[u8]) -> Result<(Kind, usize), Problem> {
+fn blob_header(message: &[u8]) -> Result<(BlobKind, usize), PbfProblem> {
     let mut kind = None;
     let mut size = None;
     let mut cursor = Cursor::new(message);
@@ -192,9 +195,9 @@ fn blob_header(message: &[u8]) -> Result<(Kind, usize), Problem> {
         match field.number {
             1 => {
                 kind = Some(match field.bytes()? {
-                    b"OSMHeader" => Kind::Header,
-                    b"OSMData" => Kind::Data,
-                    _ => Kind::Other,
+                    b"OSMHeader" => BlobKind::Header,
+                    b"OSMData" => BlobKind::Data,
+                    _ => BlobKind::Other,
                 });
             }
             2 => {
@@ -204,10 +207,10 @@ fn blob_header(message: &[u8]) -> Result<(Kind, usize), Problem> {
             _ => {}
         }
     }
-    let kind = kind.ok_or(Problem::Missing("the type in a BlobHeader"))?;
-    let found = size.ok_or(Problem::Missing("the datasize in a BlobHeader"))?;
+    let kind = kind.ok_or(PbfProblem::Missing("the type in a BlobHeader"))?;
+    let found = size.ok_or(PbfProblem::Missing("the datasize in a BlobHeader"))?;
     match usize::try_from(found) {
         Ok(size) if size <= MAX_INFLATED => Ok((kind, size)),
-        _ => Err(Problem::Size { what: "datasize", found, allowed: "0 to 32 MiB" }),
+        _ => Err(PbfProblem::Size { what: "datasize", found, allowed: "0 to 32 MiB" }),
     }
 }

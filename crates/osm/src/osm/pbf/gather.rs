@@ -13,7 +13,7 @@ use crate::osm::{LonLat, NodeId, NodeTable, RoadArea, StringPool, Way, facts::Po
 use super::{
     backdrop_objects::{BackdropWay, PlaceNode},
     duplicates::keep_last,
-    error::Problem,
+    error::PbfProblem,
     nodes::NodeBatch,
     relations::RelationBatch,
     ways::WayBatch,
@@ -54,7 +54,7 @@ struct Overrides {
 }
 
 impl WayGatherer {
-    pub(super) fn add(&mut self, batch: WayBatch) -> Result<(), Problem> {
+    pub(super) fn add(&mut self, batch: WayBatch) -> Result<(), PbfProblem> {
         self.read += (batch.kept.len() + batch.left_out.len()) as u64;
         for (reason, count) in &batch.reasons {
             *self.left_out.entry(reason).or_default() += count;
@@ -79,7 +79,7 @@ impl WayGatherer {
                 self.note_left_out(*id, in_order);
             }
             let start = self.ways.last().map_or(0, |way| way.refs.end);
-            let end = start.checked_add(kept.refs).ok_or(Problem::TooLarge("node references"))?;
+            let end = start.checked_add(kept.refs).ok_or(PbfProblem::TooLarge("node references"))?;
             let mut facts = kept.facts;
             facts.name = facts.name.and_then(global);
             facts.reference = facts.reference.and_then(global);

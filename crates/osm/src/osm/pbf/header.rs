@@ -6,24 +6,24 @@ use protobuf::Message;
 use crate::osm::read_account::HeaderInfo;
 
 use super::{
-    error::Problem,
-    wire::{self, Shape},
+    error::PbfProblem,
+    wire::{self, FieldEncoding},
 };
 
 /// Features that this reader supports. Any other required feature is refused by name.
 const SUPPORTED: [&str; 3] = ["OsmSchema-V0.6", "DenseNodes", "LocationsOnWays"];
 
 /// Reads a header block. Refuses files that cannot be read correctly.
-pub(super) fn parse(block: &[u8]) -> Result<HeaderInfo, Problem> {
-    use Shape::{Bytes, Number};
+pub(super) fn parse(block: &[u8]) -> Result<HeaderInfo, PbfProblem> {
+    use FieldEncoding::{Bytes, Number};
     wire::check(block, &[(1, Bytes), (4, Bytes), (5, Bytes), (16, Bytes), (17, Bytes), (32, Number), (33, Number)])?;
-    let damaged = |error: protobuf::Error| Problem::Message { what: "OSMHeader", detail: error.to_string() };
+    let damaged = |error: protobuf::Error| PbfProblem::Message { what: "OSMHeader", detail: error.to_string() };
     let header = HeaderBlock::parse_from_bytes(block).map_err(damaged)?;
     for feature in &header.required_features {
         match feature.as_str() {
-            "HistoricalInformation" => return Err(Problem::History),
+            "HistoricalInformation" => return Err(PbfProblem::History),
             known if SUPPORTED.contains(&known) => {}
-            other => return Err(Problem::Feature(other.to_owned())),
+            other => return Err(PbfProblem::Feature(other.to_owned())),
         }
     }
     let says = |wanted: &str| header.optional_features.iter().any(|feature| feature == wanted);

@@ -8,7 +8,7 @@ use std::io::Read;
 
 use flate2::{Decompress, FlushDecompress, Status};
 
-use super::{error::Problem, wire::Cursor};
+use super::{error::PbfProblem, wire::Cursor};
 
 /// The format's limit for a blob and for its inflated size, bytes.
 pub(super) const MAX_INFLATED: usize = 32 << 20;
@@ -47,7 +47,7 @@ impl Default for Inflater {
 
 impl Inflater {
     /// The block's bytes, valid until the next call.
-    pub(super) fn inflate<'b>(&'b mut self, blob: &'b [u8]) -> Result<(&'b [u8], Compression), Problem> {
+    pub(super) fn inflate<'b>(&'b mut self, blob: &'b [u8]) -> Result<(&'b [u8], Compression), PbfProblem> {
         let mut raw_size = None;
         let mut data = None;
         let mut cursor = Cursor::new(blob);
@@ -59,19 +59,19 @@ impl Inflater {
                     continue;
                 }
                 3 => Compression::Zlib,
-                4 => return Err(Problem::Compression("lzma")),
-                5 => return Err(Problem::Compression("bzip2")),
+                4 => return Err(PbfProblem::Compression("lzma")),
+                5 => return Err(PbfProblem::Compression("bzip2")),
                 6 => Compression::Lz4,
                 7 => Compression::Zstd,
                 _ => continue,
             };
             data = Some((compression, field.bytes()?));
         }
-        let (compression, data) = data.ok_or(Problem::Missing("the blob's data"))?;
+        let (compression, data) = data.ok_or(PbfProblem::Missing("the blob's data"))?;
         if compression == Compression::Raw {
             return raw(data, raw_size).map(|bytes| (bytes, compression));
         }
-        let raw_size = raw_size.ok_or(Problem::Missing("raw_size of a compressed blob"))?;
+        let raw_size = raw_size.ok_or(PbfProblem::Missing("raw_size of a compressed blob"))?;
         self.bytes.clear();
         self.bytes.resize(raw_size, 0);
         match compression {
@@ -83,26 +83,26 @@ impl Inflater {
     }
 }
 
-fn size(found: u64) -> Result<usize, Problem> {
+fn size(found: u64) -> Result<usize, PbfProblem> {
     let found = found as i64;
     match usize::try_from(found) {
         Ok(size) if size <= MAX_INFLATED => Ok(size),
-        _ => Err(Problem::Size { what: "raw_size", found, allowed: "0 to 32 MiB" }),
+        _ => Err(PbfProblem::Size { what: "raw_size", found, allowed: "0 to 32 MiB" }),
     }
 }
 
-fn raw(data: &[u8], raw_size: Option<usize>) -> Result<&[u8], Problem> {
+fn raw(data: &[u8], raw_size: Option<usize>) -> Result<&[u8], PbfProblem> {
     match raw_size {
         // Some writers give raw_size with raw data; others give 0.
         Some(declared) if declared != 0 && declared != data.len() => {
-            Err(Problem::RawSize { declared, found: data.len().to_string() })
+            Err(PbfProblem::RawSize { declared, found: data.len().to_string() })
         }
         _ => Ok(data),
     }
 }
 
-fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Problem> {
-    let damaged = |detail: String| Problem::Inflate { compression: "zlib", detail };
+fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), PbfProblem> {
+    let damaged = |detail: String| PbfProblem::Inflate { compression: "zlib", detail };
     decoder.reset(true);
     let declared = out.len();
     let mut end = decoder.decompress(data, out, FlushDecompress::Finish);
@@ -112,12 +112,12 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Pro
         let mut spare = [0];
         end = decoder.decompress(rest, &mut spare, FlushDecompress::Finish);
         if decoder.total_out() as usize > declared {
-            return Err(Problem::RawSize { declared, found: "more".to_owned() });
+            return Err(PbfProblem::RawSize { declared, found: "more".to_owned() });
         }
     }
     match end {
         Ok(Status::StreamEnd) if decoder.total_out() as usize == declared => Ok(()),
-        Ok(Status::StreamEnd) => Err(Problem::RawSize { declared, found: decoder.total_out().to_string() }),
+        Ok(Status::StreamEnd) => Err(PbfProblem::RawSize { declared, found: decoder.total_out().to_string() }),
         Ok(_) => Err(damaged("the data ends too early".to_owned())),
         // flate2 reports most errors of zlib-rs only as "repeated call with bad state".
         Err(error) => Err(damaged(
@@ -126,14 +126,14 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Pro
     }
 }
 
-fn lz4(data: &[u8], out: &mut [u8]) -> Result<(), Problem> {
+fn lz4(data: &[u8], out: &mut [u8]) -> Result<(), PbfProblem> {
     let found = lz4_flex::block::decompress_into(data, out)
-        .map_err(|error| Problem::Inflate { compression: "lz4", detail: error.to_string() })?;
+        .map_err(|error| PbfProblem::Inflate { compression: "lz4", detail: error.to_string() })?;
     exactly(out.len(), found)
 }
 
-fn zstd(data: &[u8], out: &mut Vec<u8>) -> Result<(), Problem> {
-    let damaged = |detail: String| Problem::Inflate { compression: "zstd", detail };
+fn zstd(data: &[u8], out: &mut Vec<u8>) -> Result<(), PbfProblem> {
+    let damaged = |detail: String| PbfProblem::Inflate { compression: "zstd", detail };
     let declared = out.len();
     let decoder = ruzstd::decoding::StreamingDecoder::new(data).map_err(|error| damaged(error.to_string()))?;
     out.clear();
@@ -142,6 +142,6 @@ fn zstd(data: &[u8], out: &mut Vec<u8>) -> Result<(), Problem> {
     exactly(declared, out.len())
 }
 
-fn exactly(declared: usize, found: usize) -> Result<(), Problem> {
-    if found == declared { Ok(()) } else { Err(Problem::RawSize { declared, found: found.to_string() }) }
+fn exactly(declared: usize, found: usize) -> Result<(), PbfProblem> {
+    if found == declared { Ok(()) } else { Err(PbfProblem::RawSize { declared, found: found.to_string() }) }
 }

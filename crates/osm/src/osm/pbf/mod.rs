@@ -29,7 +29,7 @@ pub mod write;
 use std::path::Path;
 
 pub use super::read_account::{BackdropTally, HeaderInfo, NodeTally, ReadAccount, RelationTally};
-pub use error::{ObjectId, Problem, ReadError};
+pub use error::{ObjectId, PbfProblem, ReadError};
 pub use wire::WireError;
 
 use crate::osm::{
@@ -40,7 +40,7 @@ use crate::osm::{
 
 use backdrop::AreaGatherer;
 use block::Block;
-use frame::{Frame, Kind, Source};
+use frame::{BlobKind, BlobPosition, BlobSource};
 use gather::{NodeGatherer, WayGatherer};
 use inflate::{Compression, Inflater};
 
@@ -48,7 +48,7 @@ use inflate::{Compression, Inflater};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
     /// Current stage.
-    pub stage: Stage,
+    pub stage: ReadingStage,
     /// Bytes of the file processed.
     pub done: u64,
     /// Bytes of the file in this stage.
@@ -57,7 +57,7 @@ pub struct Progress {
 
 /// The stages of a reading, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum ReadingStage {
     /// Framing and hash.
     Check,
     /// First pass.
@@ -66,14 +66,14 @@ pub enum Stage {
     Nodes,
 }
 
-impl Stage {
+impl ReadingStage {
     /// Name of the stage in a progress line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Stage::Check => "check",
-            Stage::Ways => "ways",
-            Stage::Nodes => "nodes",
+            ReadingStage::Check => "check",
+            ReadingStage::Ways => "ways",
+            ReadingStage::Nodes => "nodes",
         }
     }
 }
@@ -127,11 +127,11 @@ where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
     P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
-    let mut source = Source::open(path)?;
+    let mut source = BlobSource::open(path)?;
     let total = source.len;
-    let (frames, hash) = source.frames(|done| progress(Progress { stage: Stage::Check, done, total }))?;
+    let (frames, hash) = source.frames(|done| progress(Progress { stage: ReadingStage::Check, done, total }))?;
     let header = read_headers(&mut source, &frames)?;
-    let data: Vec<Frame> = frames.iter().copied().filter(|frame| frame.kind == Kind::Data).collect();
+    let data: Vec<BlobPosition> = frames.iter().copied().filter(|frame| frame.kind == BlobKind::Data).collect();
     let leading = if header.sorted { Leading::find(&mut source, &data)? } else { Leading::default() };
     let mut reading = Reading { source, data, changes, progress, way, point };
     let mut extract = match reading.run(leading)? {
@@ -144,7 +144,7 @@ where
     account.header = header;
     account.bytes = total;
     account.blake3 = hash.to_hex().to_string();
-    account.blobs_passed_over = frames.iter().filter(|frame| frame.kind == Kind::Other).count() as u64;
+    account.blobs_passed_over = frames.iter().filter(|frame| frame.kind == BlobKind::Other).count() as u64;
     Ok(extract)
 }
 
@@ -153,26 +153,26 @@ where
 /// # Errors
 /// The file cannot be read, or its frames or its header are damaged or not supported.
 pub fn header_and_hash(path: &Path) -> Result<(HeaderInfo, String), ReadError> {
-    let mut source = Source::open(path)?;
+    let mut source = BlobSource::open(path)?;
     let (frames, hash) = source.frames(|_| ())?;
     Ok((read_headers(&mut source, &frames)?, hash.to_hex().to_string()))
 }
 
 /// Checks every header of the file (concatenated files have several) and returns the data of the first one.
-fn read_headers(source: &mut Source, frames: &[Frame]) -> Result<HeaderInfo, ReadError> {
+fn read_headers(source: &mut BlobSource, frames: &[BlobPosition]) -> Result<HeaderInfo, ReadError> {
     let mut first = None;
     for frame in frames {
         match frame.kind {
-            Kind::Header => {
+            BlobKind::Header => {
                 let parsed = with_block(source, frame, header::parse)?;
                 // Two concatenated files are not sorted, whatever their headers claim.
                 first = Some(first.map_or(parsed, |info| HeaderInfo { sorted: false, ..info }));
             }
-            Kind::Data if first.is_none() => return Err(source.error(Some(frame.offset), Problem::NoHeader)),
-            Kind::Data | Kind::Other => {}
+            BlobKind::Data if first.is_none() => return Err(source.error(Some(frame.offset), PbfProblem::NoHeader)),
+            BlobKind::Data | BlobKind::Other => {}
         }
     }
-    first.ok_or_else(|| source.error(None, Problem::NoHeader))
+    first.ok_or_else(|| source.error(None, PbfProblem::NoHeader))
 }
 
 /// Numbers of leading blobs in a file that is sorted as claimed.
@@ -185,7 +185,7 @@ struct Leading {
 }
 
 impl Leading {
-    fn find(source: &mut Source, data: &[Frame]) -> Result<Self, ReadError> {
+    fn find(source: &mut BlobSource, data: &[BlobPosition]) -> Result<Self, ReadError> {
         let nodes = leading(source, data, nodes::only_nodes)?;
         let rest = data.get(nodes..).unwrap_or_default();
         Ok(Self { nodes, no_relations: nodes + leading(source, rest, backdrop::no_relations)? })
@@ -193,7 +193,11 @@ impl Leading {
 }
 
 /// Number of leading blobs for which `holds`, found by bisection.
-fn leading(source: &mut Source, data: &[Frame], holds: fn(&[u8]) -> Result<bool, Problem>) -> Result<usize, ReadError> {
+fn leading(
+    source: &mut BlobSource,
+    data: &[BlobPosition],
+    holds: fn(&[u8]) -> Result<bool, PbfProblem>,
+) -> Result<usize, ReadError> {
     let (mut low, mut high) = (0, data.len());
     while low < high {
         let middle = low.midpoint(high);
@@ -209,9 +213,9 @@ fn leading(source: &mut Source, data: &[Frame], holds: fn(&[u8]) -> Result<bool,
 
 /// Reads a single blob.
 fn with_block<T>(
-    source: &mut Source,
-    frame: &Frame,
-    read: impl FnOnce(&[u8]) -> Result<T, Problem>,
+    source: &mut BlobSource,
+    frame: &BlobPosition,
+    read: impl FnOnce(&[u8]) -> Result<T, PbfProblem>,
 ) -> Result<T, ReadError> {
     let mut blob = vec![0; frame.size];
     source.read_at(frame.body, &mut blob)?;
@@ -222,8 +226,8 @@ fn with_block<T>(
 
 /// The state of reading a file.
 struct Reading<'p, W, P> {
-    source: Source,
-    data: Vec<Frame>,
+    source: BlobSource,
+    data: Vec<BlobPosition>,
     /// Objects of the file that are changed do not count; those of the changes do.
     changes: &'p Changes,
     progress: &'p (dyn Fn(Progress) + Sync),
@@ -282,7 +286,7 @@ where
     fn gather_areas(&mut self, leading: Leading, changed: &[Vec<u8>]) -> Result<AreaGatherer, ReadError> {
         let mut areas = AreaGatherer::default();
         let read_areas = |bytes: &[u8]| backdrop::areas(&Block::parse(bytes)?, self.changes);
-        let take_areas = |_: Frame, _: Compression, batch| {
+        let take_areas = |_: BlobPosition, _: Compression, batch| {
             areas.add(batch);
             Ok(())
         };
@@ -303,14 +307,14 @@ where
         changed: &[Vec<u8>],
         members: &[i64],
         account: &mut ReadAccount,
-    ) -> Result<Option<(WayGatherer, Vec<Frame>)>, ReadError> {
+    ) -> Result<Option<(WayGatherer, Vec<BlobPosition>)>, ReadError> {
         let (presumed, rest) = self.data.split_at_checked(leading.nodes).unwrap_or_default();
         let mut with_nodes = presumed.to_vec();
         let mut ways = WayGatherer::default();
         let mut mistaken = false;
         let mut without_relations = leading.no_relations - presumed.len();
         let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, members, self.changes);
-        let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
+        let take_ways = |frame: BlobPosition, compression: Compression, batch: ways::WayBatch| {
             *account.blobs.entry(compression.name()).or_default() += 1;
             if batch.has_nodes {
                 with_nodes.push(frame);
@@ -321,7 +325,7 @@ where
             }
             ways.add(batch)
         };
-        pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
+        pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, ReadingStage::Ways, rest))?;
         if mistaken {
             return Ok(None);
         }
@@ -338,16 +342,16 @@ where
     fn gather_nodes(
         &mut self,
         leading: Leading,
-        with_nodes: &[Frame],
+        with_nodes: &[BlobPosition],
         changed: &[Vec<u8>],
         wanted: nodes::Ids<'_>,
         account: &mut ReadAccount,
     ) -> Result<Option<NodeGatherer>, ReadError> {
         let mut nodes = NodeGatherer::new(wanted.named.len(), wanted.backdrop.len());
         let mut mistaken = false;
-        let mut presumed_left = self.data.get(..leading.nodes).map_or(0, <[Frame]>::len);
+        let mut presumed_left = self.data.get(..leading.nodes).map_or(0, <[BlobPosition]>::len);
         let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, wanted, &self.point, self.changes);
-        let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
+        let take_nodes = |_: BlobPosition, compression: Compression, batch: nodes::NodeBatch| {
             if presumed_left > 0 {
                 presumed_left -= 1;
                 mistaken |= batch.has_others;
@@ -361,7 +365,7 @@ where
             with_nodes,
             read_nodes,
             take_nodes,
-            report(self.progress, Stage::Nodes, with_nodes),
+            report(self.progress, ReadingStage::Nodes, with_nodes),
         )?;
         if mistaken {
             return Ok(None);
@@ -375,7 +379,11 @@ where
     }
 }
 
-fn report<'p>(progress: &'p (dyn Fn(Progress) + Sync), stage: Stage, frames: &[Frame]) -> impl FnMut(u64) + Send + 'p {
+fn report<'p>(
+    progress: &'p (dyn Fn(Progress) + Sync),
+    stage: ReadingStage,
+    frames: &[BlobPosition],
+) -> impl FnMut(u64) + Send + 'p {
     let total = frames.iter().map(|frame| frame.size as u64).sum();
     move |done| progress(Progress { stage, done, total })
 }

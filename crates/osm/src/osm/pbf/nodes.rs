@@ -8,20 +8,20 @@ use protobuf::Message;
 use crate::osm::NodeId;
 use crate::osm::{
     LonLat,
-    changes::{Changes, Kind},
+    changes::{Changes, ObjectKind},
     facts::{PointFacts, Tags, place_of},
 };
 
 use super::{
     backdrop_objects::PlaceNode,
     block::{self, Block},
-    error::{ObjectId, Problem},
-    wire::{self, Cursor, Packed, Shape},
+    error::{ObjectId, PbfProblem},
+    wire::{self, Cursor, FieldEncoding, Packed},
 };
 
 /// A node that a kept way names.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Hit {
+pub(super) struct WayNode {
     /// Index in the table of named nodes.
     pub(super) index: u32,
     /// `None` if the place is invalid.
@@ -31,11 +31,11 @@ pub(super) struct Hit {
 /// Results of the second pass over one block.
 #[derive(Debug, Default)]
 pub(super) struct NodeBatch {
-    pub(super) hits: Vec<Hit>,
+    pub(super) hits: Vec<WayNode>,
     /// Facts of named nodes with tags: index in `hits` (ascending) and the facts.
     pub(super) points: Vec<(u32, PointFacts)>,
     /// Nodes of the backdrop's ways, by their own table.
-    pub(super) backdrop: Vec<Hit>,
+    pub(super) backdrop: Vec<WayNode>,
     pub(super) place_nodes: Vec<PlaceNode>,
     pub(super) read: u64,
     pub(super) deleted: u64,
@@ -53,7 +53,7 @@ pub(super) struct Ids<'n> {
 }
 
 /// Reads the nodes of a block. Nodes that are `changed` are passed over.
-pub(super) fn read<P>(block: &Block<'_>, ids: Ids<'_>, facts: &P, changed: &Changes) -> Result<NodeBatch, Problem>
+pub(super) fn read<P>(block: &Block<'_>, ids: Ids<'_>, facts: &P, changed: &Changes) -> Result<NodeBatch, PbfProblem>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
@@ -86,7 +86,7 @@ where
 }
 
 /// Whether a block holds only nodes, judged by the kinds of its objects.
-pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, Problem> {
+pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, PbfProblem> {
     let mut found = false;
     for group in Block::parse(bytes)?.groups {
         let mut cursor = Cursor::new(group);
@@ -155,7 +155,7 @@ where
     /// Counts a node, whose tags are in `self.tags`, and takes what is kept of it.
     #[inline]
     fn node(&mut self, id: i64, visible: bool, lat: i64, lon: i64) {
-        if self.changed.has(Kind::Node, id) {
+        if self.changed.has(ObjectKind::Node, id) {
             return;
         }
         self.batch.read += 1;
@@ -168,7 +168,7 @@ where
             self.take(index, self.block.grid.place(lat, lon));
         }
         if let Some(index) = self.backdrop.index(node) {
-            self.batch.backdrop.push(Hit { index, place: self.block.grid.place(lat, lon) });
+            self.batch.backdrop.push(WayNode { index, place: self.block.grid.place(lat, lon) });
         }
         if !self.tags.is_empty()
             && let Some((kind, name)) = place_of(&self.tags)
@@ -185,18 +185,18 @@ where
         {
             self.batch.points.push((self.batch.hits.len() as u32, facts));
         }
-        self.batch.hits.push(Hit { index, place });
+        self.batch.hits.push(WayNode { index, place });
     }
 
-    fn plain(&mut self, message: &[u8]) -> Result<(), Problem> {
-        use Shape::{Bytes, Number, Numbers};
+    fn plain(&mut self, message: &[u8]) -> Result<(), PbfProblem> {
+        use FieldEncoding::{Bytes, Number, Numbers};
         wire::check(message, &[(1, Number), (2, Numbers), (3, Numbers), (4, Bytes), (8, Number), (9, Number)])?;
         let node = osmformat::Node::parse_from_bytes(message)
-            .map_err(|error| Problem::Message { what: "node", detail: error.to_string() })?;
+            .map_err(|error| PbfProblem::Message { what: "node", detail: error.to_string() })?;
         block::limit(self.batch.read as usize + 1, "the number of objects in a block")?;
         let object = ObjectId::Node(node.id());
         if node.keys.len() != node.vals.len() {
-            return Err(Problem::Lengths { object, what: "keys and values" });
+            return Err(PbfProblem::Lengths { object, what: "keys and values" });
         }
         block::limit_tags(node.keys.len())?;
         self.tags.clear();
@@ -209,7 +209,7 @@ where
         Ok(())
     }
 
-    fn dense(&mut self, dense: &RawDense<'_>) -> Result<(), Problem> {
+    fn dense(&mut self, dense: &RawDense<'_>) -> Result<(), PbfProblem> {
         let (mut ids, mut lats, mut lons) = (dense.ids.cursor(), dense.lats.cursor(), dense.lons.cursor());
         let (mut keys_values, mut visibles) = (dense.keys_values.cursor(), dense.visible.cursor());
         let (tagged, known_visible) = (!keys_values.is_empty(), !visibles.is_empty());
@@ -228,10 +228,10 @@ where
         }
         let object = ObjectId::DenseNodes;
         if !(ids.is_empty() && lats.is_empty() && lons.is_empty()) {
-            return Err(Problem::Lengths { object, what: "ids, latitudes and longitudes" });
+            return Err(PbfProblem::Lengths { object, what: "ids, latitudes and longitudes" });
         }
         if !(keys_values.is_empty() && visibles.is_empty()) {
-            return Err(Problem::Lengths { object, what: "nodes and their tag lists or visible flags" });
+            return Err(PbfProblem::Lengths { object, what: "nodes and their tag lists or visible flags" });
         }
         self.tags.clear();
         Ok(())
@@ -239,18 +239,18 @@ where
 
     /// Reads the next node's tags: pairs up to a 0.
     #[inline]
-    fn dense_tags(&mut self, keys_values: &mut Cursor<'_>, object: ObjectId) -> Result<(), Problem> {
+    fn dense_tags(&mut self, keys_values: &mut Cursor<'_>, object: ObjectId) -> Result<(), PbfProblem> {
         self.tags.clear();
         loop {
             if keys_values.is_empty() {
-                return Err(Problem::Lengths { object, what: "nodes and their tag lists" });
+                return Err(PbfProblem::Lengths { object, what: "nodes and their tag lists" });
             }
             let key = keys_values.varint()?;
             if key == 0 {
                 return Ok(());
             }
             if keys_values.is_empty() {
-                return Err(Problem::Lengths { object, what: "keys and values" });
+                return Err(PbfProblem::Lengths { object, what: "keys and values" });
             }
             let strings = &self.block.strings;
             self.tags.push((strings.text(key, object)?, strings.text(keys_values.varint()?, object)?));
@@ -270,7 +270,7 @@ struct RawDense<'a> {
 }
 
 impl<'a> RawDense<'a> {
-    fn parse(message: &'a [u8]) -> Result<Self, Problem> {
+    fn parse(message: &'a [u8]) -> Result<Self, PbfProblem> {
         let mut dense = Self::default();
         let mut cursor = Cursor::new(message);
         while let Some(field) = cursor.field()? {
@@ -286,7 +286,7 @@ impl<'a> RawDense<'a> {
         Ok(dense)
     }
 
-    fn parse_info(&mut self, info: &'a [u8]) -> Result<(), Problem> {
+    fn parse_info(&mut self, info: &'a [u8]) -> Result<(), PbfProblem> {
         let mut cursor = Cursor::new(info);
         while let Some(field) = cursor.field()? {
             if field.number == 6 {

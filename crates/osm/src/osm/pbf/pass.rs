@@ -6,8 +6,8 @@
 use rayon::prelude::*;
 
 use super::{
-    error::{Problem, ReadError},
-    frame::{Frame, Source},
+    error::{PbfProblem, ReadError},
+    frame::{BlobPosition, BlobSource},
     inflate::{Compression, Inflater},
 };
 
@@ -18,15 +18,15 @@ const WINDOW_BYTES: usize = 16 << 20;
 /// Blobs read together.
 #[derive(Default)]
 struct Window<'f> {
-    frames: &'f [Frame],
+    frames: &'f [BlobPosition],
     bytes: Vec<u8>,
 }
 
 impl<'f> Window<'f> {
     /// Takes the next blobs off `frames` and reads them.
-    fn fill(&mut self, source: &mut Source, frames: &mut &'f [Frame]) -> Result<(), ReadError> {
+    fn fill(&mut self, source: &mut BlobSource, frames: &mut &'f [BlobPosition]) -> Result<(), ReadError> {
         let mut size = 0;
-        let fits = |frame: &&Frame| {
+        let fits = |frame: &&BlobPosition| {
             size += frame.size;
             size <= WINDOW_BYTES
         };
@@ -43,9 +43,9 @@ impl<'f> Window<'f> {
         Ok(())
     }
 
-    fn blobs(&self) -> Vec<(Frame, &[u8])> {
+    fn blobs(&self) -> Vec<(BlobPosition, &[u8])> {
         let mut rest = self.bytes.as_slice();
-        let split = |frame: &Frame| {
+        let split = |frame: &BlobPosition| {
             let (bytes, after) = rest.split_at_checked(frame.size)?;
             rest = after;
             Some((*frame, bytes))
@@ -55,15 +55,15 @@ impl<'f> Window<'f> {
 }
 
 /// A blob with its compression and decoded data, or its fault.
-type Decoded<T> = (Frame, Result<(Compression, T), Problem>);
+type Decoded<T> = (BlobPosition, Result<(Compression, T), PbfProblem>);
 
 /// Inflates and decodes the blobs of `frames`, and merges the results in the order of the file. `done` gets the number
 /// of blob bytes merged.
 pub(super) fn run<T: Send>(
-    source: &mut Source,
-    mut frames: &[Frame],
-    decode: impl Fn(&[u8]) -> Result<T, Problem> + Sync,
-    mut merge: impl FnMut(Frame, Compression, T) -> Result<(), Problem> + Send,
+    source: &mut BlobSource,
+    mut frames: &[BlobPosition],
+    decode: impl Fn(&[u8]) -> Result<T, PbfProblem> + Sync,
+    mut merge: impl FnMut(BlobPosition, Compression, T) -> Result<(), PbfProblem> + Send,
     mut done: impl FnMut(u64) + Send,
 ) -> Result<(), ReadError> {
     let decode_blob = |inflater: &mut Inflater, blob: &[u8]| {
@@ -87,8 +87,9 @@ pub(super) fn run<T: Send>(
             },
             || {
                 let blobs = now.blobs();
-                let decode =
-                    |inflater: &mut Inflater, (frame, blob): &(Frame, &[u8])| (*frame, decode_blob(inflater, blob));
+                let decode = |inflater: &mut Inflater, (frame, blob): &(BlobPosition, &[u8])| {
+                    (*frame, decode_blob(inflater, blob))
+                };
                 blobs.par_iter().map_init(Inflater::default, decode).collect()
             },
         );

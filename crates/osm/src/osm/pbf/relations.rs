@@ -6,7 +6,7 @@ use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
 use rustc_hash::FxHashSet;
 
-use crate::osm::changes::{Changes, Kind};
+use crate::osm::changes::{Changes, ObjectKind};
 use crate::osm::facts::{BackdropForm, NoRule, TurnRule, backdrop_kind, turn_rules};
 use crate::osm::read_account::RelationTally;
 use crate::osm::{NodeId, Restriction, Via};
@@ -14,8 +14,8 @@ use crate::osm::{NodeId, Restriction, Via};
 use super::{
     backdrop_objects::AreaRelation,
     block::Strings,
-    error::{ObjectId, Problem},
-    wire::{self, Shape},
+    error::{ObjectId, PbfProblem},
+    wire::{self, FieldEncoding},
 };
 
 /// Results from a block's relations.
@@ -36,20 +36,20 @@ struct Checked<'a> {
     tags: Vec<(&'a str, &'a str)>,
 }
 
-fn checked<'a>(message: &[u8], strings: &Strings<'a>) -> Result<Checked<'a>, Problem> {
-    use Shape::{Bytes, Number, Numbers};
+fn checked<'a>(message: &[u8], strings: &Strings<'a>) -> Result<Checked<'a>, PbfProblem> {
+    use FieldEncoding::{Bytes, Number, Numbers};
     wire::check(
         message,
         &[(1, Number), (2, Numbers), (3, Numbers), (4, Bytes), (8, Numbers), (9, Numbers), (10, Numbers)],
     )?;
     let relation = Relation::parse_from_bytes(message)
-        .map_err(|error| Problem::Message { what: "relation", detail: error.to_string() })?;
+        .map_err(|error| PbfProblem::Message { what: "relation", detail: error.to_string() })?;
     let object = ObjectId::Relation(relation.id());
     if relation.keys.len() != relation.vals.len() {
-        return Err(Problem::Lengths { object, what: "keys and values" });
+        return Err(PbfProblem::Lengths { object, what: "keys and values" });
     }
     if relation.memids.len() != relation.roles_sid.len() || relation.memids.len() != relation.types.len() {
-        return Err(Problem::Lengths { object, what: "members, roles and types" });
+        return Err(PbfProblem::Lengths { object, what: "members, roles and types" });
     }
     super::block::limit_tags(relation.keys.len())?;
     super::block::limit(relation.memids.len(), "the number of members of a relation")?;
@@ -61,10 +61,14 @@ fn checked<'a>(message: &[u8], strings: &Strings<'a>) -> Result<Checked<'a>, Pro
 }
 
 /// The multipolygon that a relation is, if its tags make it part of the backdrop and it is not `changed`.
-pub(super) fn area(message: &[u8], strings: &Strings<'_>, changed: &Changes) -> Result<Option<AreaRelation>, Problem> {
+pub(super) fn area(
+    message: &[u8],
+    strings: &Strings<'_>,
+    changed: &Changes,
+) -> Result<Option<AreaRelation>, PbfProblem> {
     let Checked { relation, object, tags } = checked(message, strings)?;
     let value = |wanted: &str| tags.iter().find(|(key, _)| *key == wanted).map(|tag| tag.1);
-    if value("type") != Some("multipolygon") || changed.has(Kind::Relation, relation.id()) {
+    if value("type") != Some("multipolygon") || changed.has(ObjectKind::Relation, relation.id()) {
         return Ok(None);
     }
     let Some(kind) = backdrop_kind(&tags).filter(|kind| kind.form() == BackdropForm::Area) else { return Ok(None) };
@@ -90,11 +94,11 @@ pub(super) fn read(
     strings: &Strings<'_>,
     changed: &Changes,
     batch: &mut RelationBatch,
-) -> Result<(), Problem> {
+) -> Result<(), PbfProblem> {
     let Checked { relation, object, tags } = checked(message, strings)?;
     batch.found = true;
     let members = Members::of(&relation, strings, object)?;
-    if changed.has(Kind::Relation, relation.id()) {
+    if changed.has(ObjectKind::Relation, relation.id()) {
         return Ok(());
     }
     batch.tally.read += 1;
@@ -133,7 +137,7 @@ struct Members {
 }
 
 impl Members {
-    fn of(relation: &Relation, strings: &Strings<'_>, object: ObjectId) -> Result<Self, Problem> {
+    fn of(relation: &Relation, strings: &Strings<'_>, object: ObjectId) -> Result<Self, PbfProblem> {
         let mut found = Self::default();
         // Nodes that stand for a missing `via`, the better ones first.
         let mut hints: [Vec<NodeId>; 2] = Default::default();
@@ -142,7 +146,7 @@ impl Members {
             super::block::add(&mut member, difference, object, "a member")?;
             let kind = kind
                 .enum_value()
-                .map_err(|kind| Problem::Message { what: "relation", detail: format!("member of type {kind}") })?;
+                .map_err(|kind| PbfProblem::Message { what: "relation", detail: format!("member of type {kind}") })?;
             // A negative index is out of range of any table.
             match (strings.text(role as u64, object)?.trim().to_ascii_lowercase().as_str(), kind) {
                 ("from", MemberType::WAY) => found.from.push(member),

@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 use crate::osm::NodeId;
 use crate::osm::{
     LonLat, RoadArea, StringPool,
-    changes::{Changes, Kind},
+    changes::{Changes, ObjectKind},
     facts::{self, BackdropForm, BackdropKind, Tags, WayDraft, WayFacts},
 };
 
 use super::{
     backdrop_objects::BackdropWay,
     block::{self, Block},
-    error::{ObjectId, Problem},
+    error::{ObjectId, PbfProblem},
     relations::{self, RelationBatch},
     wire::{Cursor, Packed},
 };
@@ -65,7 +65,7 @@ pub(super) struct WayBatch {
 
 /// Reads the ways and relations of a block. Those that are `changed` are passed over. `members` are the sorted ids of ways that
 /// multipolygons of the backdrop name.
-pub(super) fn read<W>(block: &Block<'_>, facts: &W, members: &[i64], changed: &Changes) -> Result<WayBatch, Problem>
+pub(super) fn read<W>(block: &Block<'_>, facts: &W, members: &[i64], changed: &Changes) -> Result<WayBatch, PbfProblem>
 where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
@@ -79,7 +79,7 @@ where
                 3 => {
                     reader.count()?;
                     let way = RawWay::parse(field.bytes()?)?;
-                    if !changed.has(Kind::Way, way.id) {
+                    if !changed.has(ObjectKind::Way, way.id) {
                         reader.way(&way)?;
                     }
                 }
@@ -107,12 +107,12 @@ impl<W> WayReader<'_, '_, W>
 where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
-    fn count(&mut self) -> Result<(), Problem> {
+    fn count(&mut self) -> Result<(), PbfProblem> {
         self.entities += 1;
         block::limit(self.entities, "the number of objects in a block")
     }
 
-    fn way(&mut self, way: &RawWay<'_>) -> Result<(), Problem> {
+    fn way(&mut self, way: &RawWay<'_>) -> Result<(), PbfProblem> {
         self.note_order(way.id);
         let object = ObjectId::Way(way.id);
         self.block.strings.tags(&way.keys, &way.values, object, &mut self.tags)?;
@@ -138,7 +138,7 @@ where
                 facts.name = name.map(|text| self.batch.strings.intern(text));
                 facts.reference = reference.map(|text| self.batch.strings.intern(text));
                 self.inline_places(way, object)?;
-                let refs = u32::try_from(refs).map_err(|_| Problem::TooLarge("node references"))?;
+                let refs = u32::try_from(refs).map_err(|_| PbfProblem::TooLarge("node references"))?;
                 self.batch.kept.push(KeptWay { id: way.id, refs, facts });
             }
             Err(reason) => {
@@ -154,7 +154,7 @@ where
     }
 
     /// Keeps a way as part of the backdrop, if it is. Its references begin at `start`.
-    fn backdrop(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), Problem> {
+    fn backdrop(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), PbfProblem> {
         let refs = self.batch.refs.get(start..).unwrap_or_default();
         let fits = |kind: &BackdropKind| match kind.form() {
             BackdropForm::Area => refs.len() >= 4 && refs.first() == refs.last(),
@@ -173,7 +173,7 @@ where
     }
 
     /// Keeps a closed way that is no road as the surface of one, if its tags say so. Its references begin at `start`.
-    fn area(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), Problem> {
+    fn area(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), PbfProblem> {
         let refs = self.batch.refs.get(start..).unwrap_or_default();
         if refs.len() < 4 || refs.first() != refs.last() {
             return Ok(());
@@ -198,7 +198,7 @@ where
     }
 
     /// Appends the way's references without adjacent repeats.
-    fn references(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
+    fn references(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), PbfProblem> {
         let start = self.batch.refs.len();
         let (mut node, mut last) = (0, None);
         let mut cursor = way.refs.cursor();
@@ -214,7 +214,7 @@ where
     }
 
     /// Takes the positions that the way carries for its nodes.
-    fn inline_places(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
+    fn inline_places(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), PbfProblem> {
         if way.lats.is_empty() && way.lons.is_empty() {
             return Ok(());
         }
@@ -232,7 +232,7 @@ where
         if refs.is_empty() && lats.is_empty() && lons.is_empty() {
             return Ok(());
         }
-        Err(Problem::Lengths { object, what: "node references and places" })
+        Err(PbfProblem::Lengths { object, what: "node references and places" })
     }
 }
 
@@ -249,7 +249,7 @@ struct RawWay<'a> {
 }
 
 impl<'a> RawWay<'a> {
-    fn parse(message: &'a [u8]) -> Result<Self, Problem> {
+    fn parse(message: &'a [u8]) -> Result<Self, PbfProblem> {
         let mut way = Self::default();
         let mut id = None;
         let mut cursor = Cursor::new(message);
@@ -265,7 +265,7 @@ impl<'a> RawWay<'a> {
                 _ => {}
             }
         }
-        way.id = id.ok_or(Problem::Missing("a way's id"))?;
+        way.id = id.ok_or(PbfProblem::Missing("a way's id"))?;
         Ok(way)
     }
 }

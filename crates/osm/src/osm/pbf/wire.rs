@@ -37,7 +37,7 @@ pub enum WireError {
 
 /// A field's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Value<'a> {
+pub(super) enum FieldValue<'a> {
     Varint(u64),
     Bytes(&'a [u8]),
     /// Four or eight bytes. No field of the format has this type.
@@ -46,22 +46,22 @@ pub(super) enum Value<'a> {
 
 /// One field of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Field<'a> {
+pub(super) struct MessageField<'a> {
     pub(super) number: u32,
-    pub(super) value: Value<'a>,
+    pub(super) value: FieldValue<'a>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> MessageField<'a> {
     pub(super) fn varint(self) -> Result<u64, WireError> {
         match self.value {
-            Value::Varint(value) => Ok(value),
+            FieldValue::Varint(value) => Ok(value),
             _ => Err(WireError::WrongType(self.number)),
         }
     }
 
     pub(super) fn bytes(self) -> Result<&'a [u8], WireError> {
         match self.value {
-            Value::Bytes(bytes) => Ok(bytes),
+            FieldValue::Bytes(bytes) => Ok(bytes),
             _ => Err(WireError::WrongType(self.number)),
         }
     }
@@ -131,7 +131,7 @@ impl<'a> Cursor<'a> {
 
     /// The next field. `None` at the end of the message.
     #[inline]
-    pub(super) fn field(&mut self) -> Result<Option<Field<'a>>, WireError> {
+    pub(super) fn field(&mut self) -> Result<Option<MessageField<'a>>, WireError> {
         if self.rest.is_empty() {
             return Ok(None);
         }
@@ -141,16 +141,16 @@ impl<'a> Cursor<'a> {
             return Err(WireError::FieldNumber);
         }
         let value = match (tag & 7) as u8 {
-            0 => Value::Varint(self.varint()?),
-            1 => self.take(8).map(|_| Value::Fixed)?,
+            0 => FieldValue::Varint(self.varint()?),
+            1 => self.take(8).map(|_| FieldValue::Fixed)?,
             2 => {
                 let length = self.varint()?;
-                Value::Bytes(self.take(length)?)
+                FieldValue::Bytes(self.take(length)?)
             }
-            5 => self.take(4).map(|_| Value::Fixed)?,
+            5 => self.take(4).map(|_| FieldValue::Fixed)?,
             wire => return Err(WireError::WireType { field: number, wire }),
         };
-        Ok(Some(Field { number, value }))
+        Ok(Some(MessageField { number, value }))
     }
 }
 
@@ -162,7 +162,7 @@ pub(super) fn zigzag(code: u64) -> i64 {
 
 /// Encoding of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(super) enum FieldEncoding {
     Number,
     Bytes,
     /// Packed, or one number at a time: both are legal.
@@ -171,14 +171,14 @@ pub(super) enum Shape {
 
 /// Checks a message before a generated parser reads it: well-formed, without groups, and with the right encoding of
 /// known fields.
-pub(super) fn check(message: &[u8], known: &[(u32, Shape)]) -> Result<(), WireError> {
+pub(super) fn check(message: &[u8], known: &[(u32, FieldEncoding)]) -> Result<(), WireError> {
     let mut cursor = Cursor::new(message);
     while let Some(field) = cursor.field()? {
         let shape = known.iter().find(|(number, _)| *number == field.number).map(|(_, shape)| *shape);
         let right = match field.value {
-            Value::Varint(_) => shape != Some(Shape::Bytes),
-            Value::Bytes(_) => shape != Some(Shape::Number),
-            Value::Fixed => shape.is_none(),
+            FieldValue::Varint(_) => shape != Some(FieldEncoding::Bytes),
+            FieldValue::Bytes(_) => shape != Some(FieldEncoding::Number),
+            FieldValue::Fixed => shape.is_none(),
         };
         if !right {
             return Err(WireError::WrongType(field.number));
@@ -197,12 +197,12 @@ pub(super) struct Packed<'a> {
 
 impl<'a> Packed<'a> {
     #[inline]
-    pub(super) fn add(&mut self, field: Field<'a>) -> Result<(), WireError> {
+    pub(super) fn add(&mut self, field: MessageField<'a>) -> Result<(), WireError> {
         match field.value {
-            Value::Bytes(run) if self.first.is_empty() && self.joined.is_empty() => self.first = run,
-            Value::Bytes(run) => self.join().extend_from_slice(run),
-            Value::Varint(value) => push_varint(self.join(), value),
-            Value::Fixed => return Err(WireError::WrongType(field.number)),
+            FieldValue::Bytes(run) if self.first.is_empty() && self.joined.is_empty() => self.first = run,
+            FieldValue::Bytes(run) => self.join().extend_from_slice(run),
+            FieldValue::Varint(value) => push_varint(self.join(), value),
+            FieldValue::Fixed => return Err(WireError::WrongType(field.number)),
         }
         Ok(())
     }
@@ -265,20 +265,22 @@ mod tests {
     #[test]
     fn runs_and_single_numbers_of_one_array_are_joined_in_order() {
         let mut packed = Packed::default();
-        for value in [Value::Bytes(&[1, 2]), Value::Varint(300), Value::Bytes(&[]), Value::Bytes(&[4])] {
-            packed.add(Field { number: 8, value }).unwrap();
+        for value in
+            [FieldValue::Bytes(&[1, 2]), FieldValue::Varint(300), FieldValue::Bytes(&[]), FieldValue::Bytes(&[4])]
+        {
+            packed.add(MessageField { number: 8, value }).unwrap();
         }
         let mut cursor = packed.cursor();
         let numbers: Vec<_> = std::iter::from_fn(|| (!cursor.is_empty()).then(|| cursor.varint().unwrap())).collect();
         assert_eq!(numbers, [1, 2, 300, 4]);
-        assert_eq!(packed.add(Field { number: 8, value: Value::Fixed }), Err(WireError::WrongType(8)));
+        assert_eq!(packed.add(MessageField { number: 8, value: FieldValue::Fixed }), Err(WireError::WrongType(8)));
     }
 
     #[test]
     fn a_group_is_refused_and_an_unknown_field_is_passed_over() {
         assert_eq!(Cursor::new(&[0x0b, 0x0c]).field(), Err(WireError::WireType { field: 1, wire: 3 }));
-        assert_eq!(check(&[0x7a, 1, 0, 0x7d, 1, 2, 3, 4], &[(1, Shape::Number)]), Ok(()));
-        assert_eq!(check(&[0x0a, 0], &[(1, Shape::Number)]), Err(WireError::WrongType(1)));
+        assert_eq!(check(&[0x7a, 1, 0, 0x7d, 1, 2, 3, 4], &[(1, FieldEncoding::Number)]), Ok(()));
+        assert_eq!(check(&[0x0a, 0], &[(1, FieldEncoding::Number)]), Err(WireError::WrongType(1)));
         assert_eq!(check(&[0x12, 5, 0], &[]), Err(WireError::PastEnd));
     }
 }

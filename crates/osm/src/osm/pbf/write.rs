@@ -11,7 +11,7 @@ use protobuf::Message;
 use rustc_hash::FxHashMap;
 
 use crate::osm::LonLat;
-use crate::osm::changes::{Changes, Kind, Object};
+use crate::osm::changes::{Changes, Object, ObjectKind};
 
 /// Most objects of a block, as in other writers.
 const BLOCK_OBJECTS: usize = 8000;
@@ -199,9 +199,9 @@ fn block_of(objects: &[(i64, &Object)]) -> osmformat::PrimitiveBlock {
                 relation.set_id(id);
                 for (kind, member, role) in members {
                     let kind = match kind {
-                        Kind::Node => osmformat::relation::MemberType::NODE,
-                        Kind::Way => osmformat::relation::MemberType::WAY,
-                        Kind::Relation => osmformat::relation::MemberType::RELATION,
+                        ObjectKind::Node => osmformat::relation::MemberType::NODE,
+                        ObjectKind::Way => osmformat::relation::MemberType::WAY,
+                        ObjectKind::Relation => osmformat::relation::MemberType::RELATION,
                     };
                     relation.types.push(kind.into());
                     relation.memids.push(delta(&mut last, *member));

@@ -1,7 +1,7 @@
 //! Distances to the boundary of an area, positive inside, for scores only: from a raster that is filled where it is
 //! asked, and linear between its nodes. Nothing rests on it.
 
-use crate::corridor::Area;
+use crate::corridor::PlaneArea;
 use crate::watch;
 
 /// Distance between nodes, metres.
@@ -50,7 +50,7 @@ struct Block {
 
 impl Field {
     /// The field of an area within `around_m` of a place, in both directions of both axes.
-    pub(super) fn new(area: &Area, centre: [f64; 2], around_m: f64) -> Self {
+    pub(super) fn new(area: &PlaneArea, centre: [f64; 2], around_m: f64) -> Self {
         let low = centre.map(|c| c - around_m);
         let tiles = (2.0 * around_m / (CELL_M * (BLOCK * TILE) as f64)).ceil() as usize;
         let side = tiles * TILE;
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn distances_are_those_to_the_nearest_side() {
         let square = |half: f64| vec![[-half, -half], [half, -half], [half, half], [-half, half]];
-        let area = Area { rings: vec![square(5.0), square(1.0), vec![[30.0, -9.0], [31.0, -9.0], [31.0, 9.0]]] };
+        let area = PlaneArea { rings: vec![square(5.0), square(1.0), vec![[30.0, -9.0], [31.0, -9.0], [31.0, 9.0]]] };
         let mut field = Field::new(&area, [0.3, -0.2], 9.0);
         for (p, m) in
             [([4.1, 0.2], 0.9), ([0.5, 0.2], -0.5), ([0.0, 2.2], 1.2), ([7.0, 1.0], -2.0), ([50.0, 0.0], -6.0)]

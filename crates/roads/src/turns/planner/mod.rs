@@ -37,7 +37,7 @@ const AROUND_M: f64 = 80.0;
 
 /// A path that the search found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Planned {
+pub struct PlannedPath {
     /// Its code.
     pub code: i64,
     /// Its score, metres: about the leeway that a certificate may find, less what steering and hinges lack.
@@ -46,19 +46,19 @@ pub struct Planned {
     pub room_m: f64,
 }
 
-impl Planned {
+impl PlannedPath {
     const fn new(code: i64, Score { score_m, room_m }: Score) -> Self {
         Self { code, score_m, room_m }
     }
 }
 
 /// Plans paths of one turn, for any vehicles of its length class.
-pub struct Planner<'a> {
+pub struct TurnPlanner<'a> {
     made: &'a TurnCorridors,
     field: Field,
 }
 
-impl<'a> Planner<'a> {
+impl<'a> TurnPlanner<'a> {
     /// Prepares a turn.
     #[must_use]
     pub fn new(made: &'a TurnCorridors) -> Self {
@@ -71,7 +71,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Up to three paths, the best one first. None if no seed can be driven at all.
-    pub fn plan(&mut self, vehicle: &Vehicle) -> Vec<Planned> {
+    pub fn plan(&mut self, vehicle: &Vehicle) -> Vec<PlannedPath> {
         let made = self.made;
         let mut scorer = Scorer::new(made, vehicle);
         let mut best = self.seeds(&mut scorer, KEPT, self.hopeless_m() - FAR_M);
@@ -100,28 +100,28 @@ impl<'a> Planner<'a> {
 
     /// The `count` seeds with the best scores, the best one first.
     #[must_use]
-    pub fn best_seeds(&mut self, vehicle: &Vehicle, count: usize) -> Vec<Planned> {
+    pub fn best_seeds(&mut self, vehicle: &Vehicle, count: usize) -> Vec<PlannedPath> {
         let made = self.made;
         self.seeds(&mut Scorer::new(made, vehicle), count, f64::NEG_INFINITY)
     }
 
     /// The `count` seeds with the best scores, the best one first. Only the best one may score less than `least_m`.
-    fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize, least_m: f64) -> Vec<Planned> {
-        let mut best: Vec<Planned> = Vec::new();
+    fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize, least_m: f64) -> Vec<PlannedPath> {
+        let mut best: Vec<PlannedPath> = Vec::new();
         for code in self.made.seeds() {
             let first_m = best.first().map_or(f64::NEG_INFINITY, |first| first.score_m);
             let last_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
             let floor_m = last_m.max(first_m.min(least_m));
             let Some(score) = scorer.score(&mut self.field, code, COARSE_M, floor_m) else { continue };
             let place = best.partition_point(|known| known.score_m >= score.score_m);
-            best.insert(place, Planned::new(code, score));
+            best.insert(place, PlannedPath::new(code, score));
             best.truncate(count);
         }
         let others = best.partition_point(|known| known.score_m >= least_m).max(1);
         best.truncate(others);
         for planned in &mut best {
             if let Some(fine) = scorer.score(&mut self.field, planned.code, FINE_M, f64::NEG_INFINITY) {
-                *planned = Planned::new(planned.code, fine);
+                *planned = PlannedPath::new(planned.code, fine);
             }
         }
         best.sort_by(|a, b| b.score_m.total_cmp(&a.score_m).then(a.code.cmp(&b.code)));
@@ -129,7 +129,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Varies a few parameters at a time, in steps that become smaller.
-    fn refine(&mut self, scorer: &mut Scorer<'_>, planned: &mut Planned, draw: &mut Draw) {
+    fn refine(&mut self, scorer: &mut Scorer<'_>, planned: &mut PlannedPath, draw: &mut Draw) {
         let Some(mut at) = PathCode::decode(planned.code).filter(|code| !code.shift) else { return };
         let mut steps = FIRST_STEPS;
         let mut failed = 0;
@@ -144,7 +144,7 @@ impl<'a> Planner<'a> {
             if let Some(score) = (other != at).then(better).flatten() {
                 // What helped once is tried again, but not the way back.
                 (at, failed) = (other, 1);
-                *planned = Planned::new(at.encode(), score);
+                *planned = PlannedPath::new(at.encode(), score);
                 if planned.score_m >= EASY_M {
                     return;
                 }

@@ -4,7 +4,7 @@
 use super::field::Field;
 use crate::turns::corridors::TurnCorridors;
 use crate::vehicle::{Unit, Vehicle};
-use netcert_base::counted::{WorkKind, count};
+use netcert_base::work_count::{WorkKind, count};
 
 /// Estimated deviation of the first unit from its nominal place, and how much more each further unit deviates, metres.
 const TUBE_M: [f64; 2] = [0.09, 0.03];
@@ -337,14 +337,14 @@ fn along(p: [f64; 2], u: [f64; 2], m: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::corridor::Area;
+    use crate::corridor::PlaneArea;
 
     /// A side of 8 m passes a corner that points at it, straight on or turning. Looks at all of it at every moment find no less room.
     #[test]
     fn a_side_that_goes_on_has_the_room_of_all_its_places() {
         let yard = vec![[-30.0, -30.0], [30.0, -30.0], [30.0, 30.0], [-30.0, 30.0]];
         let island = vec![[0.0, 0.0], [-3.0, 6.0], [3.0, 6.0]];
-        let area = Area { rings: vec![yard, island] };
+        let area = PlaneArea { rings: vec![yard, island] };
         let mut field = Field::new(&area, [0.0, 0.0], 29.0);
         for (aside_m, turn_rad) in [(0.3, 0.0), (0.9, 0.0), (1.4, 0.01), (2.0, 0.03), (0.6, -0.004)] {
             let (mut side, mut found_m, mut whole_m, mut truth_m) = (Side::default(), 2.5_f64, 2.5_f64, 2.5_f64);

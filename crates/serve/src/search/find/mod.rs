@@ -39,7 +39,7 @@ enum Spelling {
 
 /// How a road fits what was typed, the best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in super::super) enum Rank {
+pub(in super::super) enum MatchRank {
     /// All of the name, or the ref.
     Exact,
     /// The name begins so.
@@ -56,8 +56,8 @@ pub(in super::super) enum Rank {
 
 /// A road that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct Hit<'f> {
-    pub(in super::super) rank: Rank,
+pub(in super::super) struct FoundRoad<'f> {
+    pub(in super::super) rank: MatchRank,
     pub(in super::super) road: &'f WholeRoad,
 }
 
@@ -148,7 +148,7 @@ impl Finder {
     }
 
     /// The roads that fit a text, the best first: by rank, then by length.
-    pub(in super::super) fn find(&self, text: &str) -> Vec<Hit<'_>> {
+    pub(in super::super) fn find(&self, text: &str) -> Vec<FoundRoad<'_>> {
         let mut typed = fold::words(text);
         typed.truncate(MOST_WORDS);
         if typed.is_empty() {
@@ -165,7 +165,7 @@ impl Finder {
             // Words are left out only where nothing else is found.
             let most = if found.is_empty() { typed.len() } else { 1 };
             let more = without.take(most).find(|found| !found.is_empty()).unwrap_or_default();
-            let new: Vec<Hit<'_>> =
+            let new: Vec<FoundRoad<'_>> =
                 more.into_iter().filter(|hit| !found.iter().any(|one| one.road == hit.road)).collect();
             found.extend(new);
         }
@@ -244,15 +244,15 @@ impl Finder {
     }
 
     /// The roads that have all typed words but `without` of them.
-    fn ranked(&self, typed: &[Typed], asked_ref: &str, without: u8) -> Vec<Hit<'_>> {
+    fn ranked(&self, typed: &[Typed], asked_ref: &str, without: u8) -> Vec<FoundRoad<'_>> {
         let rank = |entry: &Entry| match &entry.reference {
-            Some(own) if **own == *asked_ref => Some(Rank::Exact),
-            Some(own) if own.starts_with(asked_ref) && without == 0 => Some(Rank::Within),
+            Some(own) if **own == *asked_ref => Some(MatchRank::Exact),
+            Some(own) if own.starts_with(asked_ref) && without == 0 => Some(MatchRank::Within),
             // The same number with other letters: `OH 315` for `SR 315`.
-            Some(own) if without == 1 && same_number(own, asked_ref) => Some(Rank::Without(1)),
+            Some(own) if without == 1 && same_number(own, asked_ref) => Some(MatchRank::Without(1)),
             _ => entry.rank(typed, without),
         };
-        self.entries.iter().filter_map(|entry| Some(Hit { rank: rank(entry)?, road: &entry.road })).collect()
+        self.entries.iter().filter_map(|entry| Some(FoundRoad { rank: rank(entry)?, road: &entry.road })).collect()
     }
 }
 
@@ -263,7 +263,7 @@ fn same_number(a: &str, b: &str) -> bool {
 }
 
 impl Entry {
-    fn rank(&self, typed: &[Typed], without: u8) -> Option<Rank> {
+    fn rank(&self, typed: &[Typed], without: u8) -> Option<MatchRank> {
         let (mut worst, mut slips, mut missing) = (Fit::Whole, 0_u8, 0_u8);
         let (mut in_order, mut known) = (true, false);
         for (i, Typed { fits, telling, slips_tell }) in (0..).zip(typed) {
@@ -283,12 +283,12 @@ impl Entry {
         let all_named = typed.len() == usize::from(self.named);
         match () {
             () if missing > without || (missing > 0 && !known) => None,
-            () if missing > 0 => Some(Rank::Without(missing)),
-            () if slips > 0 => Some(Rank::Slips(slips)),
-            () if worst == Fit::Within => Some(Rank::Within),
-            () if in_order && all_named && worst == Fit::Whole => Some(Rank::Exact),
-            () if in_order && typed.len() <= usize::from(self.named) => Some(Rank::Prefix),
-            () => Some(Rank::Words),
+            () if missing > 0 => Some(MatchRank::Without(missing)),
+            () if slips > 0 => Some(MatchRank::Slips(slips)),
+            () if worst == Fit::Within => Some(MatchRank::Within),
+            () if in_order && all_named && worst == Fit::Whole => Some(MatchRank::Exact),
+            () if in_order && typed.len() <= usize::from(self.named) => Some(MatchRank::Prefix),
+            () => Some(MatchRank::Words),
         }
     }
 }

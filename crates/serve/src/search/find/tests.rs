@@ -44,35 +44,35 @@ fn finder() -> Finder {
 fn roads_are_found_as_people_type_them() {
     let finder = finder();
     for (typed, text, rank) in [
-        ("NW Cornell Rd", "Northwest Cornell Road", Rank::Exact),
-        ("nw cornell", "Northwest Cornell Road", Rank::Prefix),
-        ("north west cornell", "Northwest Cornell Road", Rank::Within),
-        ("cornell", "Northwest Cornell Road", Rank::Words),
-        ("SW 5th Ave", "Southwest 5th Avenue", Rank::Exact),
-        ("Southwest Fifth", "Southwest 5th Avenue", Rank::Prefix),
-        ("6th st", "Sixth Street", Rank::Exact),
-        ("burnsde", "West Burnside Street", Rank::Slips(2)),
-        ("St. Helens", "Saint Helens Road", Rank::Prefix),
-        ("hauptstr 12", "Hauptstraße", Rank::Without(1)),
-        ("Hauptstr. 12a, Heidelberg", "Hauptstraße", Rank::Without(2)),
-        ("E 5th Ave", "Southwest 5th Avenue", Rank::Without(1)),
-        ("OH 30", "US 30", Rank::Without(1)),
-        ("US Highway 30", "US 30", Rank::Exact),
-        ("CA 12 Pacific", "Pacific Highway", Rank::Words),
-        ("pacific hwy 12", "Pacific Highway", Rank::Without(1)),
-        ("haupstrasse", "Hauptstraße", Rank::Slips(2)),
-        ("HAUPTSTRASSE", "Hauptstraße", Rank::Exact),
-        ("goethestr", "Goethe Straße", Rank::Prefix),
-        ("roemerstrasse", "Römerstraße", Rank::Slips(2)),
-        ("willy brandt pl", "Willy-Brandt-Platz", Rank::Exact),
-        ("avda mare de deu", "Avinguda de la Mare de Déu", Rank::Words),
-        ("lodzka", "Łódzka", Rank::Exact),
-        ("lestany", "Carrer de l'Estany", Rank::Words),
-        ("I-5", "I 5", Rank::Exact),
-        ("Interstate 5", "I 5", Rank::Exact),
-        ("a5", "A 5", Rank::Exact),
-        ("Autobahn 5", "A 5", Rank::Exact),
-        ("l551", "L 551", Rank::Exact),
+        ("NW Cornell Rd", "Northwest Cornell Road", MatchRank::Exact),
+        ("nw cornell", "Northwest Cornell Road", MatchRank::Prefix),
+        ("north west cornell", "Northwest Cornell Road", MatchRank::Within),
+        ("cornell", "Northwest Cornell Road", MatchRank::Words),
+        ("SW 5th Ave", "Southwest 5th Avenue", MatchRank::Exact),
+        ("Southwest Fifth", "Southwest 5th Avenue", MatchRank::Prefix),
+        ("6th st", "Sixth Street", MatchRank::Exact),
+        ("burnsde", "West Burnside Street", MatchRank::Slips(2)),
+        ("St. Helens", "Saint Helens Road", MatchRank::Prefix),
+        ("hauptstr 12", "Hauptstraße", MatchRank::Without(1)),
+        ("Hauptstr. 12a, Heidelberg", "Hauptstraße", MatchRank::Without(2)),
+        ("E 5th Ave", "Southwest 5th Avenue", MatchRank::Without(1)),
+        ("OH 30", "US 30", MatchRank::Without(1)),
+        ("US Highway 30", "US 30", MatchRank::Exact),
+        ("CA 12 Pacific", "Pacific Highway", MatchRank::Words),
+        ("pacific hwy 12", "Pacific Highway", MatchRank::Without(1)),
+        ("haupstrasse", "Hauptstraße", MatchRank::Slips(2)),
+        ("HAUPTSTRASSE", "Hauptstraße", MatchRank::Exact),
+        ("goethestr", "Goethe Straße", MatchRank::Prefix),
+        ("roemerstrasse", "Römerstraße", MatchRank::Slips(2)),
+        ("willy brandt pl", "Willy-Brandt-Platz", MatchRank::Exact),
+        ("avda mare de deu", "Avinguda de la Mare de Déu", MatchRank::Words),
+        ("lodzka", "Łódzka", MatchRank::Exact),
+        ("lestany", "Carrer de l'Estany", MatchRank::Words),
+        ("I-5", "I 5", MatchRank::Exact),
+        ("Interstate 5", "I 5", MatchRank::Exact),
+        ("a5", "A 5", MatchRank::Exact),
+        ("Autobahn 5", "A 5", MatchRank::Exact),
+        ("l551", "L 551", MatchRank::Exact),
     ] {
         let found = finder.find(typed);
         let first = found.first().map(|hit| (&*hit.road.text, hit.rank));
@@ -90,8 +90,8 @@ fn the_whole_name_is_before_its_beginning_its_words_and_parts_of_words() {
     let texts: Vec<&str> = found.iter().map(|hit| &*hit.road.text).collect();
     assert_eq!(texts, ["Main Street", "Main Street Extension", "Old Main Street"]);
     let found = finder.find("main");
-    let ranks: Vec<(&str, Rank)> = found.iter().map(|hit| (&*hit.road.text, hit.rank)).collect();
-    assert_eq!(ranks.last(), Some(&("Domain Road", Rank::Within)));
+    let ranks: Vec<(&str, MatchRank)> = found.iter().map(|hit| (&*hit.road.text, hit.rank)).collect();
+    assert_eq!(ranks.last(), Some(&("Domain Road", MatchRank::Within)));
     // The ref itself is before the roads that carry it, and these before others of similar refs.
     let of_ref: Vec<&str> = finder.find("i5").iter().map(|hit| &*hit.road.text).collect();
     assert_eq!(of_ref, ["I 5", "Pacific Highway"]);

@@ -1,6 +1,6 @@
 //! Conditions of OpenStreetMap's conditional restrictions: `no @ (weight>7.5 AND 22:00-06:00); yes @ (PH)`.
 //!
-//! Conditions are joined by `AND`; `;` or `OR` inside parentheses means either. What cannot be parsed is [`Condition::Strange`], whose truth is
+//! Conditions are joined by `AND`; `;` or `OR` inside parentheses means either. What cannot be parsed is [`RuleCondition::Strange`], whose truth is
 //! unclear: it closes nothing for certain and opens nothing.
 
 use super::hours::Hours;
@@ -12,7 +12,7 @@ use crate::vehicle::{Classes, Member};
 
 /// How a number is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Comparison {
+pub(crate) enum NumberComparison {
     Less,
     AtMost,
     Equal,
@@ -22,13 +22,13 @@ pub(crate) enum Comparison {
 
 /// One condition.
 #[derive(Debug, Clone)]
-pub(crate) enum Condition {
+pub(crate) enum RuleCondition {
     /// All hold.
-    All(Vec<Condition>),
+    All(Vec<RuleCondition>),
     /// One of them holds.
-    Any(Vec<Condition>),
+    Any(Vec<RuleCondition>),
     /// A size, mass or number of the vehicle.
-    Size(Property, Comparison, f64),
+    Size(Property, NumberComparison, f64),
     /// A class of vehicles, by its key.
     Class(String),
     /// `articulated`
@@ -51,7 +51,7 @@ pub(crate) enum Condition {
 #[derive(Debug, Clone)]
 pub(crate) struct Clause {
     pub(crate) value: String,
-    pub(crate) condition: Condition,
+    pub(crate) condition: RuleCondition,
 }
 
 /// The clauses of a conditional value, in order. A part without `@` goes on the condition before it.
@@ -74,7 +74,7 @@ pub(crate) fn clauses(text: &str) -> Vec<Clause> {
         }
     }
     let clause = |(value, condition): (String, Option<String>)| {
-        let condition = condition.map_or(Condition::Strange, |text| Condition::read(&text));
+        let condition = condition.map_or(RuleCondition::Strange, |text| RuleCondition::read(&text));
         Clause { value, condition }
     };
     parts.into_iter().map(clause).collect()
@@ -153,7 +153,7 @@ fn bare(mut text: &str) -> &str {
     }
 }
 
-impl Condition {
+impl RuleCondition {
     /// Reads a condition.
     pub(crate) fn read(text: &str) -> Self {
         Self::read_within(text, 0)
@@ -201,7 +201,7 @@ impl Condition {
         }
         match word.as_str() {
             "trailer" | "trailers" | "with_trailer" | "with trailer" => {
-                Self::Size(Property::Trailers, Comparison::AtLeast, 1.0)
+                Self::Size(Property::Trailers, NumberComparison::AtLeast, 1.0)
             }
             "articulated" => Self::Articulated,
             "semitrailer" | "semi_trailer" | "semi-trailer" => Self::Semitrailer,
@@ -229,12 +229,12 @@ impl Condition {
     /// A comparison, as `weight` and `>7.5 t`. Without a property, a unit of mass means the weight.
     fn compared(left: &str, rest: &str) -> Option<Self> {
         let (comparison, length) = match rest.as_bytes() {
-            [b'>', b'=', ..] | [b'=', b'>', ..] => (Comparison::AtLeast, 2),
-            [b'<', b'=', ..] | [b'=', b'<', ..] => (Comparison::AtMost, 2),
-            [b'=', b'=', ..] => (Comparison::Equal, 2),
-            [b'>', ..] => (Comparison::More, 1),
-            [b'<', ..] => (Comparison::Less, 1),
-            [b'=', ..] => (Comparison::Equal, 1),
+            [b'>', b'=', ..] | [b'=', b'>', ..] => (NumberComparison::AtLeast, 2),
+            [b'<', b'=', ..] | [b'=', b'<', ..] => (NumberComparison::AtMost, 2),
+            [b'=', b'=', ..] => (NumberComparison::Equal, 2),
+            [b'>', ..] => (NumberComparison::More, 1),
+            [b'<', ..] => (NumberComparison::Less, 1),
+            [b'=', ..] => (NumberComparison::Equal, 1),
             _ => return None,
         };
         let bound = rest.get(length..)?.trim();
@@ -247,8 +247,8 @@ impl Condition {
         };
         if property == Property::Trailers {
             match (bound, comparison) {
-                ("yes", Comparison::Equal) => return Some(Self::Size(property, Comparison::AtLeast, 1.0)),
-                ("no", Comparison::Equal) => return Some(Self::Size(property, Comparison::Less, 1.0)),
+                ("yes", NumberComparison::Equal) => return Some(Self::Size(property, NumberComparison::AtLeast, 1.0)),
+                ("no", NumberComparison::Equal) => return Some(Self::Size(property, NumberComparison::Less, 1.0)),
                 _ => {}
             }
         }
@@ -265,7 +265,7 @@ impl Condition {
     /// The property, if the condition is that it is greater than a bound and nothing else.
     pub(crate) fn only_size(&self) -> Option<(Property, f64)> {
         match *self {
-            Self::Size(property, Comparison::More | Comparison::AtLeast, bound) => Some((property, bound)),
+            Self::Size(property, NumberComparison::More | NumberComparison::AtLeast, bound) => Some((property, bound)),
             _ => None,
         }
     }
@@ -336,20 +336,20 @@ fn of_flag(flag: Option<bool>) -> Truth {
 }
 
 /// Compares what is known of the vehicle. A size that nobody stated is not compared, as with limits.
-fn compare(subject: &Subject<'_>, property: Property, comparison: Comparison, bound: f64) -> Truth {
+fn compare(subject: &Subject<'_>, property: Property, comparison: NumberComparison, bound: f64) -> Truth {
     let Some(vehicle) = subject.vehicle else { return Truth::Unclear };
     let Some((least, most)) = property.of(vehicle) else { return Truth::Never };
     let slack = property.slack();
     let holds = |size: f64| match comparison {
-        Comparison::More => size > bound + slack,
-        Comparison::AtLeast => size > bound - slack,
-        Comparison::Less => size < bound - slack,
-        Comparison::AtMost => size < bound + slack,
-        Comparison::Equal => (size - bound).abs() < slack,
+        NumberComparison::More => size > bound + slack,
+        NumberComparison::AtLeast => size > bound - slack,
+        NumberComparison::Less => size < bound - slack,
+        NumberComparison::AtMost => size < bound + slack,
+        NumberComparison::Equal => (size - bound).abs() < slack,
     };
     match (holds(least), holds(most)) {
         (true, true) => Truth::Always,
-        (false, false) if comparison != Comparison::Equal || most < bound || least > bound => Truth::Never,
+        (false, false) if comparison != NumberComparison::Equal || most < bound || least > bound => Truth::Never,
         _ => Truth::Unclear,
     }
 }

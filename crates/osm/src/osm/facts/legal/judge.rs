@@ -7,10 +7,10 @@
 //! and gates are closed for everybody. `designated` and the keys of buses lift conditions of `vehicle` and `motor_vehicle`.
 
 use super::condition::Clause;
-use super::outcomes::{Cause, Outcome, Outcomes};
+use super::outcomes::{Cause, Outcomes, RuleOutcome};
 use super::property::{Property, SLACK};
 use super::rule::{About, Closes, Rule, Says, oneway_closes, permission_for};
-use super::set::Group;
+use super::set::RuleGroup;
 use super::subject::Subject;
 use super::truth::Truth;
 use crate::osm::facts::{Direction, Limit, Permission};
@@ -55,7 +55,7 @@ impl Chain {
 
 /// Adds what an object's rules say against a vehicle to `found`, and returns its permission with the rule that gives it.
 pub(crate) fn judge<'g>(
-    group: &'g Group,
+    group: &'g RuleGroup,
     subject: &Subject<'_>,
     found: &mut Vec<Finding<'g>>,
 ) -> (Permission, Option<&'g Rule>) {
@@ -74,7 +74,7 @@ pub(crate) fn judge<'g>(
 }
 
 /// Whether the rules of one-way traffic close the direction to all vehicles of the class at all times.
-pub(crate) fn closed_to(group: &Group, subject: &Subject<'_>) -> bool {
+pub(crate) fn closed_to(group: &RuleGroup, subject: &Subject<'_>) -> bool {
     let outcomes = outcomes(group, subject, Chain::Oneway);
     let mut all = outcomes.iter();
     all.all(|outcome| outcome.permission == Permission::No && outcome.cause == Cause::Certain)
@@ -98,7 +98,7 @@ enum Force {
 
 /// Conditions that close the road, whatever more specific keys say.
 #[derive(Default)]
-struct Closures(Vec<(Outcome, Closure)>);
+struct Closures(Vec<(RuleOutcome, Closure)>);
 
 impl Closures {
     fn add(&mut self, outcomes: &Outcomes, closure: Closure) {
@@ -110,8 +110,8 @@ impl Closures {
     }
 }
 
-fn outcomes(group: &Group, subject: &Subject<'_>, chain: Chain) -> Outcomes {
-    let open = Outcome { permission: Permission::Yes, cause: Cause::Certain, rule: None };
+fn outcomes(group: &RuleGroup, subject: &Subject<'_>, chain: Chain) -> Outcomes {
+    let open = RuleOutcome { permission: Permission::Yes, cause: Cause::Certain, rule: None };
     let mut outcomes = Outcomes::one(open);
     let keys: Vec<(usize, &Rule, &str)> =
         group.rules.iter().enumerate().filter_map(|(i, rule)| Some((i, rule, chain.key(rule)?))).collect();
@@ -174,7 +174,7 @@ fn step(
         } else {
             *outcomes = Outcomes::one(outcome);
             if outcome.cause > Cause::Certain {
-                outcomes.add(Outcome { permission: Permission::Yes, cause: Cause::Certain, ..outcome });
+                outcomes.add(RuleOutcome { permission: Permission::Yes, cause: Cause::Certain, ..outcome });
             }
             let lifts = matches!(value, "designated" | "official") || matches!(key, "psv" | "bus" | "tourist_bus");
             if lifts && outcome.permission < Permission::No {
@@ -206,9 +206,9 @@ fn step(
     }
 }
 
-fn plain_outcome(rule: &Rule, value: &str, side: Direction, i: usize, subject: &Subject<'_>) -> Outcome {
+fn plain_outcome(rule: &Rule, value: &str, side: Direction, i: usize, subject: &Subject<'_>) -> RuleOutcome {
     let (permission, cause) = meaning(rule, value, side, subject);
-    Outcome { permission, cause, rule: Some(i) }
+    RuleOutcome { permission, cause, rule: Some(i) }
 }
 
 /// What a value says of access, or of a direction of travel.
@@ -242,7 +242,7 @@ fn conditional(rule: &Rule, clauses: &[Clause], side: Direction, i: usize, subje
         if cause == Cause::Unclear && permission == Permission::Yes {
             continue;
         }
-        new.add(Outcome { permission, cause, rule: Some(i) });
+        new.add(RuleOutcome { permission, cause, rule: Some(i) });
         if cause == Cause::Certain {
             return (new, true);
         }
@@ -251,9 +251,9 @@ fn conditional(rule: &Rule, clauses: &[Clause], side: Direction, i: usize, subje
 }
 
 /// The finding of outcomes: closed, or closed at some times.
-fn finding<'g>(group: &'g Group, outcomes: &Outcomes, chain: Chain) -> Option<Finding<'g>> {
+fn finding<'g>(group: &'g RuleGroup, outcomes: &Outcomes, chain: Chain) -> Option<Finding<'g>> {
     let no = outcomes.get(Permission::No)?;
-    let rule_of = |outcome: Outcome| outcome.rule.and_then(|i| group.rules.get(i));
+    let rule_of = |outcome: RuleOutcome| outcome.rule.and_then(|i| group.rules.get(i));
     let mut opens = outcomes.iter().filter(|outcome| outcome.permission < Permission::No).collect::<Vec<_>>();
     opens.sort_by_key(|outcome| outcome.cause);
     let open = opens.last().copied();

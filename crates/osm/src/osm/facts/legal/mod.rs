@@ -11,15 +11,15 @@
 //! | `truth` | whether something holds always, never or at times |
 //! | `property` | what is compared of a vehicle |
 //! | `set` | the rules of a direction as they are kept and stored |
-//! | `named` | the tag behind a plain limit, access or a barrier |
+//! | `plain_tags` | the tag behind a plain limit, access or a barrier |
 //! | `subject` | for whom and when a rule is judged |
 //! | `judge`, `outcomes` | rules and a vehicle make a verdict |
 
 mod condition;
 mod hours;
 mod judge;
-mod named;
 mod outcomes;
+mod plain_tags;
 mod property;
 mod rule;
 mod set;
@@ -29,12 +29,12 @@ mod tags;
 mod tests;
 mod truth;
 
-use super::{Direction, Legal, Limit, Permission, told};
+use super::{Direction, Legal, Limit, Permission, tag_lines};
 use crate::vehicle::{Member, Vehicle};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
-use named::AccessOf;
+use plain_tags::AccessOf;
 use property::{Property, SLACK};
-use set::Group;
+use set::RuleGroup;
 use subject::Subject;
 
 pub(super) use rule::OTHER_VEHICLES;
@@ -95,12 +95,12 @@ impl Legal {
             hgv: self.hgv.max(other.hgv),
             motor_vehicle: self.motor_vehicle.max(other.motor_vehicle),
             rules,
-            tags: told::merged(self.tags.as_deref(), other.tags.as_deref()),
+            tags: tag_lines::merged(self.tags.as_deref(), other.tags.as_deref()),
         }
     }
 
     /// Plain limits and access as rules, to be judged beside others.
-    fn plain_group(&self) -> Vec<Group> {
+    fn plain_group(&self) -> Vec<RuleGroup> {
         let word = |permission| match permission {
             Permission::Yes => None,
             Permission::Restricted => Some("destination"),
@@ -112,7 +112,7 @@ impl Legal {
         let limits = self.limit_tags("");
         let tags = tags.iter().map(|(key, value)| (*key, value.as_str()));
         let limits = limits.iter().map(|(key, value)| (key.as_str(), value.as_str()));
-        vec![Group::new(tags.chain(limits), Direction::Forward)]
+        vec![RuleGroup::new(tags.chain(limits), Direction::Forward)]
     }
 
     /// The plain limits as tags, their keys with an ending.
@@ -137,14 +137,14 @@ impl Legal {
             _ => false,
         };
         let rules = self.rules.as_ref().and_then(|rules| {
-            let mut groups: Vec<Group> = rules.groups().to_vec();
+            let mut groups: Vec<RuleGroup> = rules.groups().to_vec();
             for group in &mut groups {
                 group.rules.retain(|rule| !rule.is_plain_limit(replaced));
             }
             let tags = [("maxheight", height_m), ("maxweight", weight_t)];
             let tags: Vec<(&str, String)> =
                 tags.iter().filter_map(|(key, most)| Some((*key, (*most)?.to_string()))).collect();
-            groups.push(Group::new(tags.iter().map(|(key, value)| (*key, value.as_str())), Direction::Forward));
+            groups.push(RuleGroup::new(tags.iter().map(|(key, value)| (*key, value.as_str())), Direction::Forward));
             RuleSet::of(groups)
         });
         Legal {

@@ -24,7 +24,7 @@ impl Cause {
 
 /// A possible outcome, and the index of the rule that it comes from. `None`: nothing is tagged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Outcome {
+pub(crate) struct RuleOutcome {
     pub(crate) permission: Permission,
     pub(crate) cause: Cause,
     pub(crate) rule: Option<usize>,
@@ -32,19 +32,19 @@ pub(crate) struct Outcome {
 
 /// Possible outcomes, at most one for each permission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Outcomes([Option<Outcome>; 3]);
+pub(crate) struct Outcomes([Option<RuleOutcome>; 3]);
 
 impl Outcomes {
     pub(crate) const NONE: Self = Self([None; 3]);
 
-    pub(crate) fn one(outcome: Outcome) -> Self {
+    pub(crate) fn one(outcome: RuleOutcome) -> Self {
         let mut all = Self::NONE;
         all.add(outcome);
         all
     }
 
     /// Adds an outcome. Of two of one permission, the more certain one stays.
-    pub(crate) fn add(&mut self, outcome: Outcome) {
+    pub(crate) fn add(&mut self, outcome: RuleOutcome) {
         if let Some(slot) = self.0.get_mut(outcome.permission as usize)
             && slot.is_none_or(|known| outcome.cause < known.cause)
         {
@@ -56,20 +56,20 @@ impl Outcomes {
         other.iter().for_each(|outcome| self.add(outcome));
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Outcome> + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = RuleOutcome> + '_ {
         self.0.iter().flatten().copied()
     }
 
-    pub(crate) fn get(&self, permission: Permission) -> Option<Outcome> {
+    pub(crate) fn get(&self, permission: Permission) -> Option<RuleOutcome> {
         self.0.get(permission as usize).copied().flatten()
     }
 
     /// Each outcome with a further restriction.
-    pub(crate) fn restricted(&self, by: Outcome) -> Self {
+    pub(crate) fn restricted(&self, by: RuleOutcome) -> Self {
         let mut all = Self::NONE;
         for own in self.iter() {
             let stricter = if by.permission > own.permission { by } else { own };
-            all.add(Outcome { cause: own.cause.max(by.cause), ..stricter });
+            all.add(RuleOutcome { cause: own.cause.max(by.cause), ..stricter });
         }
         all
     }

@@ -11,7 +11,7 @@ use crate::osm::facts::Direction;
 
 /// The rules of one object, a way or a node. They are judged together: a more specific one may lift another.
 #[derive(Debug, Clone)]
-pub(crate) struct Group {
+pub(crate) struct RuleGroup {
     pub(crate) side: Direction,
     pub(crate) rules: Vec<Rule>,
 }
@@ -19,7 +19,7 @@ pub(crate) struct Group {
 #[derive(Debug)]
 struct Inner {
     text: String,
-    groups: Vec<Group>,
+    groups: Vec<RuleGroup>,
 }
 
 /// Rules that depend on the vehicle or the time. A set is whole: it has all limits and access rules of its objects, so that
@@ -64,7 +64,7 @@ impl<'de> Deserialize<'de> for RuleSet {
 
 const SIDES: [(Direction, &str); 2] = [(Direction::Forward, "forward"), (Direction::Backward, "backward")];
 
-impl Group {
+impl RuleGroup {
     /// The rules of an object for a direction of travel.
     pub(crate) fn new<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>, side: Direction) -> Self {
         let mut rules: Vec<Rule> = tags.filter_map(|(key, value)| Rule::read(key, value, side)).collect();
@@ -95,8 +95,8 @@ impl Group {
 
 impl RuleSet {
     /// `None` without a rule.
-    pub(crate) fn of(groups: Vec<Group>) -> Option<Self> {
-        let mut groups: Vec<(String, Group)> =
+    pub(crate) fn of(groups: Vec<RuleGroup>) -> Option<Self> {
+        let mut groups: Vec<(String, RuleGroup)> =
             groups.into_iter().filter(|group| !group.rules.is_empty()).map(|group| (group.text(), group)).collect();
         groups.sort_by(|a, b| a.0.cmp(&b.0));
         groups.dedup_by(|a, b| a.0 == b.0);
@@ -110,13 +110,13 @@ impl RuleSet {
     /// The rules of an object whose tags are the same in both directions of travel.
     pub fn from_tags(tags: &[(String, String)]) -> Option<Self> {
         let tags = tags.iter().map(|(key, value)| (key.as_str(), value.as_str()));
-        Self::of(vec![Group::new(tags, Direction::Forward)])
+        Self::of(vec![RuleGroup::new(tags, Direction::Forward)])
     }
 
     /// The set of a text. `None` for a text that [`Self::text`] does not make.
     #[must_use]
     pub fn from_text(text: &str) -> Option<Self> {
-        let groups = text.split("\n\n").map(Group::from_text).collect::<Option<Vec<_>>>()?;
+        let groups = text.split("\n\n").map(RuleGroup::from_text).collect::<Option<Vec<_>>>()?;
         Self::of(groups).filter(|set| set.text() == text)
     }
 
@@ -126,12 +126,12 @@ impl RuleSet {
         &self.0.text
     }
 
-    pub(crate) fn groups(&self) -> &[Group] {
+    pub(crate) fn groups(&self) -> &[RuleGroup] {
         &self.0.groups
     }
 
     /// The rules of both, each object by itself.
-    pub(crate) fn with(&self, other: &[Group]) -> Option<Self> {
+    pub(crate) fn with(&self, other: &[RuleGroup]) -> Option<Self> {
         Self::of(self.groups().iter().chain(other).cloned().collect())
     }
 

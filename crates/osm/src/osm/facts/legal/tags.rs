@@ -2,7 +2,7 @@
 
 use super::judge::closed_to;
 use super::rule::{About, Closes, Rule, Says, may_be_rule, oneway_closes, permission_for};
-use super::set::{Group, RuleSet};
+use super::set::{RuleGroup, RuleSet};
 use super::subject::{At, Subject};
 use super::{Legal, Property};
 use crate::osm::facts::notes::{Note, Notes};
@@ -95,13 +95,13 @@ impl<'t> RuleTags<'t> {
         })
     }
 
-    fn group(&self, side: Direction, untagged: Oneway) -> Group {
+    fn group(&self, side: Direction, untagged: Oneway) -> RuleGroup {
         let oneway = self.has_oneway_rules();
         let is_oneway = |key: &str| key.split(':').any(|part| part == "oneway");
         // A motorway is one-way without a tag.
         let implied = oneway && untagged != Oneway::No && !self.tags.iter().any(|(key, _)| *key == "oneway");
         let tags = self.tags.iter().copied().filter(|(key, _)| oneway || !is_oneway(key));
-        Group::new(tags.chain(implied.then_some(("oneway", "yes"))), side)
+        RuleGroup::new(tags.chain(implied.then_some(("oneway", "yes"))), side)
     }
 
     /// Adds the rules of a direction to its plain limits and access.

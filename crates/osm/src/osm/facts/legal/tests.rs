@@ -785,7 +785,7 @@ proptest! {
     #[test]
     fn any_text_is_read_and_comes_back(key in "(hgv|access|maxweight|oneway|maxaxles)(:(forward|hgv|conditional|trailer|x)){0,3}", value in "[ -~≥\n]{0,40}") {
         for side in [Direction::Forward, Direction::Backward] {
-            let group = super::set::Group::new([(key.as_str(), value.as_str())].into_iter(), side);
+            let group = super::set::RuleGroup::new([(key.as_str(), value.as_str())].into_iter(), side);
             if let Some(set) = RuleSet::of(vec![group]) {
                 prop_assert_eq!(RuleSet::from_text(set.text()), Some(set.clone()));
                 let _ = set.open_when();

@@ -1,4 +1,4 @@
-//! WorkKind work: how often certificates did what takes their time, whatever the machine's speed.
+//! Counted work: how often certificates did what takes their time, whatever the machine's speed.
 //!
 //! Work is counted on the thread that does it. [`counted`] returns what a piece of work took on its thread.
 

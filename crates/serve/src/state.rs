@@ -2,16 +2,16 @@
 
 use super::api::explain::Explanations;
 use super::changes::Comparisons;
-use super::older::Older;
+use super::older::OlderState;
 use super::planning::Planners;
-use super::region::Region;
+use super::region::RegionState;
 use super::tiles::Overviews;
 
 /// What requests are answered from.
-pub(super) struct Served {
-    pub(super) region: Region,
+pub(super) struct ServedState {
+    pub(super) region: RegionState,
     /// The older database, if the server was given one.
-    pub(super) older: Option<Older>,
+    pub(super) older: Option<OlderState>,
     /// The name of this state; see `answer`. It covers the older database, so no answer outlives either.
     pub(super) state: String,
     pub(super) overviews: Overviews,
@@ -20,10 +20,10 @@ pub(super) struct Served {
     pub(super) planners: Planners,
 }
 
-impl Served {
+impl ServedState {
     /// What is served of a region and the older database beside it. Nothing is kept yet.
-    pub(super) fn new(region: Region, older: Option<Older>) -> Self {
-        let state = region.state(&older.as_ref().map(Older::state).unwrap_or_default());
+    pub(super) fn new(region: RegionState, older: Option<OlderState>) -> Self {
+        let state = region.state(&older.as_ref().map(OlderState::state).unwrap_or_default());
         Self {
             region,
             older,

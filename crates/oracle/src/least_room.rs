@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use netcert_base::corridor::{Area, Corridor};
+use netcert_base::corridor::{Corridor, PlaneArea};
 
-use crate::area::{Body, EDGES, Edge, Ground, Touch, in_any, place_in_any};
+use crate::area::{AreaBoundary, Body, BodyEdge, EDGES, Touch, in_any, place_in_any};
 use crate::path::V2;
-use crate::simulator::{Drive, Run};
+use crate::simulator::{SimulatedDrive, SimulatedRun};
 
 /// Each unit counts an area by its own clock: the place of its axle's foot. A disturbed unit's clock differs from the
 /// steer axle's by less than this, metres.
@@ -15,8 +15,8 @@ const CLOCK_M: f64 = 1.5;
 const COARSE: usize = 5;
 
 /// The areas along a path, and the steps at which each counts.
-pub struct Grounds {
-    spans: Vec<(Ground, Range<usize>)>,
+pub struct PathAreas {
+    spans: Vec<(AreaBoundary, Range<usize>)>,
     /// Steps in [`CLOCK_M`].
     clock: usize,
 }
@@ -38,7 +38,7 @@ pub struct Worst {
     pub room_m: f64,
     pub step: usize,
     pub unit: usize,
-    pub edge: Edge,
+    pub edge: BodyEdge,
     /// Ahead of the unit's axle, and to its left, metres.
     pub ahead_m: f64,
     pub aside_m: f64,
@@ -55,21 +55,26 @@ impl Worst {
 }
 
 /// The step at which the steer axle is `from_m` from the first vertex of the path's plan.
-fn step_at(drive: &Drive<'_>, from_m: f64) -> f64 {
+fn step_at(drive: &SimulatedDrive<'_>, from_m: f64) -> f64 {
     let spans = drive.path.span_of_vertex(0) as f64 + from_m / drive.path.spacing_m;
     spans * drive.steps_per_span as f64
 }
 
 /// The least room of any body while the steer axle is between two places of the path, metres from the first vertex of
 /// its plan. A metre and a half at both ends does not count. `None` if nothing is left.
-pub fn swept_room(drive: &Drive<'_>, run: &Run, area: &Area, heads_m: [f64; 2]) -> Option<Worst> {
-    let grounds = Grounds::between(drive, &[(area, heads_m)]);
+pub fn swept_room(
+    drive: &SimulatedDrive<'_>,
+    run: &SimulatedRun,
+    area: &PlaneArea,
+    heads_m: [f64; 2],
+) -> Option<Worst> {
+    let grounds = PathAreas::between(drive, &[(area, heads_m)]);
     grounds.least(drive, run, run.steps())
 }
 
-impl Grounds {
+impl PathAreas {
     /// The areas of a corridor, for a path with one vertex for each of its stations.
-    pub fn new(corridor: &Corridor, drive: &Drive<'_>) -> Self {
+    pub fn new(corridor: &Corridor, drive: &SimulatedDrive<'_>) -> Self {
         let places = |heads: &Range<usize>| {
             [heads.start as f64 * corridor.spacing_m, heads.end.saturating_sub(1) as f64 * corridor.spacing_m]
         };
@@ -79,11 +84,11 @@ impl Grounds {
 
     /// Areas, each with the first and the last place of the steer axle for which it counts, metres from the first
     /// vertex of the path's plan.
-    pub fn between(drive: &Drive<'_>, spans: &[(&Area, [f64; 2])]) -> Self {
+    pub fn between(drive: &SimulatedDrive<'_>, spans: &[(&PlaneArea, [f64; 2])]) -> Self {
         let steps = |[from_m, to_m]: [f64; 2]| {
             step_at(drive, from_m).ceil().max(0.0) as usize..step_at(drive, to_m).floor().max(0.0) as usize + 1
         };
-        let spans = spans.iter().map(|(area, places)| (Ground::new(area), steps(*places))).collect();
+        let spans = spans.iter().map(|(area, places)| (AreaBoundary::new(area), steps(*places))).collect();
         Self { spans, clock: (step_at(drive, CLOCK_M) - step_at(drive, 0.0)).ceil() as usize }
     }
 
@@ -123,20 +128,27 @@ impl Grounds {
     }
 
     /// The least room of a unit at a step in the areas that may count.
-    pub fn room_m(&self, drive: &Drive<'_>, run: &Run, step: usize, unit: usize) -> f64 {
+    pub fn room_m(&self, drive: &SimulatedDrive<'_>, run: &SimulatedRun, step: usize, unit: usize) -> f64 {
         let (grounds, body) = (self.counting(step), body(drive, run, step, unit));
         let rooms = EDGES.into_iter().filter_map(|edge| in_any(&grounds, &body, edge, f64::INFINITY));
         rooms.map(|touch| touch.room_m).fold(f64::INFINITY, f64::min)
     }
 
     /// The areas that may count at a step. One more than really counts only adds to the room.
-    fn counting(&self, step: usize) -> Vec<&Ground> {
+    fn counting(&self, step: usize) -> Vec<&AreaBoundary> {
         let near = |steps: &Range<usize>| steps.start <= step + self.clock && step < steps.end + self.clock;
         self.spans.iter().filter(|(_, steps)| near(steps)).map(|(ground, _)| ground).collect()
     }
 
     /// The least room of one edge of a unit at a step. `None` where it is not sure that an area counts.
-    pub fn edge(&self, drive: &Drive<'_>, run: &Run, step: usize, unit: usize, edge: Edge) -> Option<Worst> {
+    pub fn edge(
+        &self,
+        drive: &SimulatedDrive<'_>,
+        run: &SimulatedRun,
+        step: usize,
+        unit: usize,
+        edge: BodyEdge,
+    ) -> Option<Worst> {
         if !self.surely(step) {
             return None;
         }
@@ -145,7 +157,14 @@ impl Grounds {
     }
 
     /// The two ends of one edge of a unit at a step. Empty where it is not sure that an area counts.
-    pub fn ends(&self, drive: &Drive<'_>, run: &Run, step: usize, unit: usize, edge: Edge) -> Vec<Worst> {
+    pub fn ends(
+        &self,
+        drive: &SimulatedDrive<'_>,
+        run: &SimulatedRun,
+        step: usize,
+        unit: usize,
+        edge: BodyEdge,
+    ) -> Vec<Worst> {
         if !self.surely(step) {
             return Vec::new();
         }
@@ -155,7 +174,13 @@ impl Grounds {
     }
 
     /// The least room of a unit in some steps of a run.
-    pub fn least_of(&self, drive: &Drive<'_>, run: &Run, range: Range<usize>, unit: usize) -> Option<Worst> {
+    pub fn least_of(
+        &self,
+        drive: &SimulatedDrive<'_>,
+        run: &SimulatedRun,
+        range: Range<usize>,
+        unit: usize,
+    ) -> Option<Worst> {
         let range = range.start.max(run.first)..range.end.min(run.steps().end);
         let search = |range: Range<usize>, stride: usize| {
             let mut least: Option<Worst> = None;
@@ -175,7 +200,7 @@ impl Grounds {
     }
 
     /// The least room of any unit in some steps of a run.
-    pub fn least(&self, drive: &Drive<'_>, run: &Run, range: Range<usize>) -> Option<Worst> {
+    pub fn least(&self, drive: &SimulatedDrive<'_>, run: &SimulatedRun, range: Range<usize>) -> Option<Worst> {
         let units = 0..drive.vehicle.units.len();
         let rooms = units.filter_map(|unit| self.least_of(drive, run, range.clone(), unit));
         rooms.min_by(|a, b| a.room_m.total_cmp(&b.room_m))
@@ -183,7 +208,7 @@ impl Grounds {
 
     /// Whether a vertex of the boundary gets under a body in some steps of a run. With several areas a vertex of one
     /// may be in the middle of another; such a vertex is none.
-    pub fn under(&self, drive: &Drive<'_>, run: &Run, range: Range<usize>) -> Option<(usize, V2)> {
+    pub fn under(&self, drive: &SimulatedDrive<'_>, run: &SimulatedRun, range: Range<usize>) -> Option<(usize, V2)> {
         let range = range.start.max(run.first)..range.end.min(run.steps().end);
         range.step_by(COARSE).filter(|step| self.surely(*step)).find_map(|step| {
             let grounds = self.counting(step);
@@ -198,7 +223,7 @@ impl Grounds {
 }
 
 /// A unit's body after a step.
-pub fn body(drive: &Drive<'_>, run: &Run, step: usize, unit: usize) -> Body {
+pub fn body(drive: &SimulatedDrive<'_>, run: &SimulatedRun, step: usize, unit: usize) -> Body {
     let (guide, headings) = run.at(step);
     Body::new(&drive.vehicle.units[unit], drive.axles(guide, headings)[unit], headings[unit])
 }
@@ -215,12 +240,12 @@ mod tests {
         let vehicle = fleet::vehicle("EU-SEMI16.5");
         let plan: Vec<V2> = (0..=200).map(|k| [0.5 * f64::from(k), 0.0]).collect();
         let path = Path::through(&plan, 0.5, (0.0, 0.0), 50.0, 25.0);
-        let drive = Drive::new(&vehicle, &path, 5);
+        let drive = SimulatedDrive::new(&vehicle, &path, 5);
         let run = drive.whole(&Disturbance::none(drive.steps()));
-        let strip = Area { rings: vec![vec![[-60.0, -2.0], [100.0, -2.0], [100.0, 1.9], [-60.0, 1.9]]] };
+        let strip = PlaneArea { rings: vec![vec![[-60.0, -2.0], [100.0, -2.0], [100.0, 1.9], [-60.0, 1.9]]] };
         let worst = swept_room(&drive, &run, &strip, [10.0, 60.0]).unwrap();
         assert!((worst.room_m - (1.9 - 0.5 * 2.55)).abs() < 1e-9, "{worst:?}");
-        assert_eq!(worst.edge, Edge::Left);
+        assert_eq!(worst.edge, BodyEdge::Left);
         // The front is 1.4 m ahead of the steer axle, whose last place that counts is 98.5 m.
         let worst = swept_room(&drive, &run, &strip, [20.0, 100.0]).unwrap();
         assert!((worst.room_m - 0.1).abs() < 0.01 && worst.ahead_m > 5.0, "{worst:?}");

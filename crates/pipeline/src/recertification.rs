@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::path::Path;
 
 use super::error::RunError;
-use crate::certify::{Job, Touched, TurnJob, certify_some_turns, certify_strokes};
+use crate::certify::{Dependents, Job, TurnJob, certify_some_turns, certify_strokes};
 use crate::network::{EdgeNo, Network};
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
@@ -77,13 +77,13 @@ pub(super) struct MadeAgain {
 }
 
 /// What is to be certified again.
-pub(super) struct Again<'a> {
+pub(super) struct Recertification<'a> {
     pub(super) network: &'a Network,
     pub(super) facts: &'a [TurnFacts],
-    pub(super) touched: &'a Touched,
+    pub(super) touched: &'a Dependents,
 }
 
-impl Again<'_> {
+impl Recertification<'_> {
     /// The edges of touched strokes with the measures of their corridors, in order.
     pub(super) fn measures(&self, settings: &Settings, reporter: &dyn Reporter) -> Vec<(EdgeNo, EdgeMeasure)> {
         let Self { network, touched, .. } = *self;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use geo::{Area as _, BooleanOps as _, Buffer as _, ConvexHull as _, MultiPoint, MultiPolygon, Polygon, Simplify as _};
 
-use super::ride::Ride;
+use super::ride::NominalRide;
 use crate::stet::motion::Pose;
 use crate::stop::{Stop, Stopped};
 use crate::vehicle::{Unit, Vehicle};
@@ -32,7 +32,7 @@ const GAP_M2: f64 = 0.05;
 /// `stop` was told. It is checked before each unit.
 pub(super) fn swept(
     vehicle: &Vehicle,
-    ride: &Ride,
+    ride: &NominalRide,
     heads: &Range<usize>,
     stop: &Stop,
 ) -> Result<Vec<MultiPolygon>, Stopped> {
@@ -46,7 +46,7 @@ pub(super) fn swept(
 }
 
 /// The poses at moments that are close where a unit turns and apart where all go straight.
-fn moments(ride: &Ride, heads: &Range<usize>) -> Vec<Vec<Pose>> {
+fn moments(ride: &NominalRide, heads: &Range<usize>) -> Vec<Vec<Pose>> {
     let mut kept: Vec<Vec<Pose>> = Vec::new();
     let steps = (heads.len().saturating_sub(1) as f64 / FINE) as usize;
     for step in 0..=steps {
@@ -119,7 +119,7 @@ mod tests {
         let corridor = Corridor::straight(60.0, 2.0, 2.0);
         let vehicle = Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap().clone();
         let plan: Vec<[f64; 2]> = corridor.x.iter().zip(&corridor.y).map(|(&x, &y)| [x, y]).collect();
-        let ride = Ride::new(&corridor, &plan, &vehicle);
+        let ride = NominalRide::new(&corridor, &plan, &vehicle);
         let all = swept(&vehicle, &ride, &(20..51), &Stop::never()).unwrap();
         for (unit, swept) in vehicle.units.iter().zip(&all) {
             let body_m = unit.coupling_to_axle_m + unit.front_overhang_m + unit.rear_overhang_m;
@@ -139,7 +139,7 @@ mod tests {
         let corridor = Corridor::from_curvature(0.5, [0.0; 2], 0.3, &profile.straight(40.0).curvature, 4.0, 4.0);
         let vehicle = Catalogue::builtin().unwrap().get("AU-SEMI19").unwrap().clone();
         let plan: Vec<[f64; 2]> = corridor.x.iter().zip(&corridor.y).map(|(&x, &y)| [x, y]).collect();
-        let ride = Ride::new(&corridor, &plan, &vehicle);
+        let ride = NominalRide::new(&corridor, &plan, &vehicle);
         let heads = 60..180;
         let all = swept(&vehicle, &ride, &heads, &Stop::never()).unwrap();
         // Bodies at other moments than those drawn: corners drawn in by three centimetres are inside.

@@ -6,7 +6,7 @@ use netcert_base::corrections::Options;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
-use super::marked::Marks;
+use super::marks::Marks;
 use super::model::Model;
 use super::results::{Planned, SpanResult};
 use super::sweeps::Sweeps;

@@ -2,7 +2,7 @@
 
 use super::piece::BodyPiece;
 use crate::UP;
-use crate::swept::SweptVehicle;
+use crate::swept_vehicle::SweptVehicle;
 use crate::vector::{Point, framed, length};
 
 /// Deducted for rounding, metres. Coordinates of 1e8 m are exact to 3e-8.
@@ -10,7 +10,7 @@ pub(super) const ROUNDING_M: f64 = 1e-6;
 
 /// What is deducted for a piece.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Taken {
+pub(super) struct Deductions {
     /// For deviations to all sides, and for the bow, metres.
     pub(super) stray: f64,
     pub(super) bow: [f64; 2],
@@ -21,7 +21,7 @@ pub(super) struct Taken {
     pub(super) led: f64,
 }
 
-impl Taken {
+impl Deductions {
     /// The distance that decides a claim without a direction, metres.
     pub(super) fn needed(&self, target: f64, strict: bool) -> f64 {
         let needed = target - self.no_room();
@@ -41,11 +41,11 @@ impl Taken {
 
 impl SweptVehicle<'_> {
     /// What is deducted for a piece, whatever the direction.
-    pub(super) fn taken(&self, piece: &BodyPiece) -> Taken {
+    pub(super) fn taken(&self, piece: &BodyPiece) -> Deductions {
         let headings = piece.t.map(|t| self.pose(piece.step, piece.unit, t).u);
         let [x, y] = [headings[0][0] + headings[1][0], headings[0][1] + headings[1][1]];
         let (swing, l) = (self.motion.swing(piece.step, piece.unit), self.chain.links[piece.unit].l);
-        Taken {
+        Deductions {
             stray: self.stray(piece),
             bow: self.bow(piece),
             headings,
@@ -56,7 +56,7 @@ impl SweptVehicle<'_> {
     }
 
     /// Bound of how far a piece's places are off towards a unit vector, metres.
-    pub(super) fn toward(&self, piece: &BodyPiece, taken: &Taken, m: Point) -> f64 {
+    pub(super) fn toward(&self, piece: &BodyPiece, taken: &Deductions, m: Point) -> f64 {
         let (step, unit) = (piece.step, piece.unit);
         let Some(tube) = self.tubes.get(step, unit) else { return f64::INFINITY };
         let across = |a: f64| self.off(step, unit, a, tube) + a.abs() * tube.r1 / self.chain.links[unit].l;

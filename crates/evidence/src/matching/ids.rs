@@ -1,18 +1,18 @@
 //! Rows whose place is given by ids. An id that no longer exists is reported with what the way has today.
 
-use super::index::{Index, RoadPiece};
-use super::track::Track;
+use super::index::{MatchingIndex, RoadPiece};
+use super::track::MeasuredLine;
 use super::{Found, Match, directed, unmatched};
 use crate::network::{EdgeNo, offset_m};
 use crate::osm::{LonLat, NodeId};
-use crate::row::Row;
+use crate::row::MeasurementRow;
 use crate::words::Named as _;
 
 /// A geometry beside ids may lie so far from what they mean, metres. It is often a place beside the road for a label.
 const BESIDE_M: f64 = 100.0;
 
 /// The edge of an id, and it alone.
-pub(super) fn edge(index: &Index<'_>, row: &Row, id: i64) -> Found {
+pub(super) fn edge(index: &MatchingIndex<'_>, row: &MeasurementRow, id: i64) -> Found {
     let Some((found, edge)) = index.edge(id) else {
         let today = row.way_id.map(|way_id| edges_of(index, way_id)).unwrap_or_default();
         return unmatched(format!("edge {id} does not exist{today}"));
@@ -30,7 +30,7 @@ pub(super) fn edge(index: &Index<'_>, row: &Row, id: i64) -> Found {
 }
 
 /// The edges that a way has today, for messages.
-fn edges_of(index: &Index<'_>, way_id: i64) -> String {
+fn edges_of(index: &MatchingIndex<'_>, way_id: i64) -> String {
     let edges = index.of_way(way_id).iter().flat_map(|piece| piece.edges).flatten();
     let told = |edge: EdgeNo| {
         let edge = &index.network.edges[edge.index()];
@@ -44,7 +44,7 @@ fn edges_of(index: &Index<'_>, way_id: i64) -> String {
 }
 
 /// The edges of a way, or of a part of it, in the directions that the row means.
-pub(super) fn way(index: &Index<'_>, row: &Row, way_id: i64, nodes: Option<[NodeId; 2]>) -> Found {
+pub(super) fn way(index: &MatchingIndex<'_>, row: &MeasurementRow, way_id: i64, nodes: Option<[NodeId; 2]>) -> Found {
     let all = index.of_way(way_id);
     if all.is_empty() {
         return unmatched(format!("way {way_id} is no road of this network"));
@@ -81,7 +81,12 @@ fn between(all: &[RoadPiece], [a, b]: [NodeId; 2]) -> Result<Vec<&RoadPiece>, St
 }
 
 /// A junction, or the corner of it between two edges.
-pub(super) fn junction(index: &Index<'_>, row: &Row, node: NodeId, edges: Option<[i64; 2]>) -> Found {
+pub(super) fn junction(
+    index: &MatchingIndex<'_>,
+    row: &MeasurementRow,
+    node: NodeId,
+    edges: Option<[i64; 2]>,
+) -> Found {
     let Some(at) = index.node(node) else {
         return unmatched(format!("no edge begins or ends at node {node}"));
     };
@@ -105,7 +110,7 @@ pub(super) fn junction(index: &Index<'_>, row: &Row, node: NodeId, edges: Option
 }
 
 /// The edges at a node, for messages.
-fn edges_at(index: &Index<'_>, node: NodeId) -> String {
+fn edges_at(index: &MatchingIndex<'_>, node: NodeId) -> String {
     let ids = |ends: bool| {
         let at = index.network.crossings.at(node).iter().map(|&edge| &index.network.edges[edge.index()]);
         let at = at.filter(|edge| if ends { edge.to_node == node } else { edge.from_node == node });
@@ -115,11 +120,11 @@ fn edges_at(index: &Index<'_>, node: NodeId) -> String {
 }
 
 /// Checks that a geometry beside the ids lies where they are.
-fn beside<'l>(row: &Row, lines: impl Iterator<Item = &'l [LonLat]>) -> Result<(), Match> {
+fn beside<'l>(row: &MeasurementRow, lines: impl Iterator<Item = &'l [LonLat]>) -> Result<(), Match> {
     let Some(at) = row.at else { return Ok(()) };
     let distance_m = |line: &[LonLat]| match line {
         [only] => offset_m(at, *only).into_iter().fold(0.0, f64::hypot),
-        line => Track::new(at, line.iter().copied()).foot([0.0, 0.0]).distance_m,
+        line => MeasuredLine::new(at, line.iter().copied()).foot([0.0, 0.0]).distance_m,
     };
     let nearest_m = lines.map(distance_m).fold(f64::INFINITY, f64::min);
     if nearest_m <= BESIDE_M {

@@ -1,6 +1,6 @@
 //! Drawn networks: nodes at metres east and north of a place, ways through them, and rows of evidence on them.
 
-use super::super::{Along, Match, Place, Quantity, Row, Value, match_rows};
+use super::super::{Along, Match, MeasurementRow, Place, Quantity, Value, match_rows};
 use crate::network::{EdgeNo, Network, build};
 use crate::osm::facts::{CrossSection, Jurisdiction, way_facts};
 use crate::osm::{Extract, LonLat, NodeId, NodeTable, Way};
@@ -82,8 +82,8 @@ impl Drawing {
 }
 
 /// A width at a place.
-pub(super) fn row(place: Place) -> Row {
-    Row {
+pub(super) fn row(place: Place) -> MeasurementRow {
+    MeasurementRow {
         number: 1,
         id: None,
         quantity: Quantity::CarriagewayWidth,
@@ -102,21 +102,21 @@ pub(super) fn row(place: Place) -> Row {
 }
 
 /// A width along a line.
-pub(super) fn line(places: &[[f64; 2]]) -> Row {
+pub(super) fn line(places: &[[f64; 2]]) -> MeasurementRow {
     row(Place::Line(places.iter().map(|&place| at(place)).collect()))
 }
 
 /// A width at a position.
-pub(super) fn point(place: [f64; 2]) -> Row {
+pub(super) fn point(place: [f64; 2]) -> MeasurementRow {
     row(Place::Point(at(place)))
 }
 
-pub(super) fn matched(network: &Network, row: &Row) -> Match {
+pub(super) fn matched(network: &Network, row: &MeasurementRow) -> Match {
     match_rows(network, std::slice::from_ref(row)).remove(0)
 }
 
 /// A match as text: edges by way and nodes, in order, or the words of a refusal.
-pub(super) fn told(network: &Network, row: &Row) -> String {
+pub(super) fn told(network: &Network, row: &MeasurementRow) -> String {
     let edge = |&index: &EdgeNo| {
         let edge = &network.edges[index.index()];
         format!("{}:{}-{}", network.road(edge).way_id, edge.from_node, edge.to_node)

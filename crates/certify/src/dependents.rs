@@ -17,7 +17,7 @@ const NEAR_M: f64 = 150.0;
 
 /// Strokes and turns to certify again.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Touched {
+pub struct Dependents {
     /// Indices into [`Network::strokes`], sorted.
     pub strokes: Vec<u32>,
     /// Turns, sorted.
@@ -26,7 +26,7 @@ pub struct Touched {
     pub nodes: Vec<NodeId>,
 }
 
-impl Touched {
+impl Dependents {
     /// What may differ if the widths of `edges` (ids) and the kerbs at `nodes` do.
     #[must_use]
     pub fn find(network: &Network, turns: &[TurnFacts], edges: &[i64], nodes: &[NodeId]) -> Self {

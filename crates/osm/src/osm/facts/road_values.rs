@@ -9,7 +9,7 @@ use super::{Legal, Oneway, RoadClass, WayFacts};
 
 /// What such a source says of a road.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GivenRoad {
+pub struct RoadValues {
     /// Road class.
     pub class: RoadClass,
     /// Whether it is a slip road.
@@ -34,7 +34,7 @@ pub fn given_class(name: &str) -> Result<RoadClass, &'static str> {
     road_class(name)
 }
 
-impl GivenRoad {
+impl RoadValues {
     /// The facts. A width that no road has is noted and not used.
     pub fn facts(&self, notes: &mut Notes) -> WayFacts {
         let mut section = SectionReader::default();

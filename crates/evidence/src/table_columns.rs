@@ -2,7 +2,7 @@
 //!
 //! The geometry is a GeoPackage's blob: the drawn place; for a surface its polygon; beside ids the position that the row gave.
 
-use super::row::{Place, Quantity, Row, Value};
+use super::row::{MeasurementRow, Place, Quantity, Value};
 use crate::osm::{LonLat, NodeId};
 use crate::rows::Bounds;
 use crate::shape::{self, Shape};
@@ -28,7 +28,7 @@ pub struct Columns {
     pub geom: Option<Vec<u8>>,
 }
 
-impl Row {
+impl MeasurementRow {
     /// The row as columns.
     pub fn columns(&self) -> Columns {
         let mut columns =
@@ -87,7 +87,7 @@ fn blob(kind: u32, rings: &[&[LonLat]], bounds: Bounds) -> Vec<u8> {
 /// Value, place and the position beside ids that columns hold.
 ///
 /// # Errors
-/// They are not what [`Row::columns`] writes.
+/// They are not what [`MeasurementRow::columns`] writes.
 pub fn parts(quantity: Quantity, columns: &Columns) -> Result<(Value, Place, Option<LonLat>), String> {
     let shape = match &columns.geom {
         Some(blob) => shape::from_geopackage(blob)?.1,
@@ -138,9 +138,9 @@ mod tests {
         LonLat { lon_e7, lat_e7 }
     }
 
-    fn row(quantity: Quantity, value: Value, place: Place, beside: Option<LonLat>) -> Row {
+    fn row(quantity: Quantity, value: Value, place: Place, beside: Option<LonLat>) -> MeasurementRow {
         let way_id = if let Place::Way { way_id, .. } = place { Some(way_id) } else { None };
-        Row {
+        MeasurementRow {
             number: 2,
             id: None,
             quantity,

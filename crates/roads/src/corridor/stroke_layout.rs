@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use super::Params;
-use super::course::{Course, Link, Room, closed_course, open_course};
+use super::course::{ChainLine, ChainLink, Room, closed_course, open_course};
 use super::frame::Frame;
 use super::polyline::Polyline;
 use super::smooth::{Smoothed, Smoothing, smooth};
@@ -23,7 +23,7 @@ pub type Sections<'a> = dyn Fn(&Edge) -> CrossSection + Sync + 'a;
 const MOST_LENGTH_M: f64 = 500_000.0;
 
 /// A stroke and its approach in a metric frame.
-pub struct LaidOut<'n> {
+pub struct StrokeLayout<'n> {
     pub(super) network: &'n Network,
     pub(super) frame: Frame,
     pub(super) params: &'n Params,
@@ -44,7 +44,7 @@ struct Laid<'n> {
     skipped: usize,
 }
 
-impl<'n> LaidOut<'n> {
+impl<'n> StrokeLayout<'n> {
     /// # Errors
     /// `Geometry`: the stroke has no edges, is wider than a metric frame, or has an edge of hundreds of kilometres.
     pub fn new(network: &'n Network, stroke: &Stroke, params: &'n Params) -> Result<Self, UnknownReason> {
@@ -86,12 +86,12 @@ impl<'n> LaidOut<'n> {
     }
 
     /// The edges with their widths.
-    pub(super) fn links(&self, sections: &Sections<'_>, policy: Policy) -> Vec<Link<'_>> {
+    pub(super) fn links(&self, sections: &Sections<'_>, policy: Policy) -> Vec<ChainLink<'_>> {
         self.edges
             .iter()
             .map(|laid| {
                 let (road, section) = (self.network.road(laid.edge), sections(laid.edge));
-                Link {
+                ChainLink {
                     index: laid.index,
                     edge: laid.edge,
                     points: &laid.points,
@@ -106,7 +106,7 @@ impl<'n> LaidOut<'n> {
     }
 
     /// The line that is driven.
-    pub(super) fn course(&self, links: &[Link<'_>]) -> Course {
+    pub(super) fn course(&self, links: &[ChainLink<'_>]) -> ChainLine {
         if self.closed { closed_course(links, self.params) } else { open_course(links, self.approach) }
     }
 

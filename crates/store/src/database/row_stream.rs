@@ -17,14 +17,14 @@ use crate::error::StoreError;
 type Sql<T> = Result<T, sqlx::Error>;
 
 /// Rows that are read from the file one by one.
-pub struct Streamed<'d, T> {
+pub struct RowStream<'d, T> {
     stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
     runtime: &'d Runtime,
     path: &'d Path,
     read: fn(&SqliteRow) -> Sql<T>,
 }
 
-impl<T> Iterator for Streamed<'_, T> {
+impl<T> Iterator for RowStream<'_, T> {
     type Item = Result<T, StoreError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -36,9 +36,9 @@ impl<T> Iterator for Streamed<'_, T> {
 
 impl Database {
     /// The rows of a statement without parameters.
-    pub(crate) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> Streamed<'_, T> {
+    pub(crate) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> RowStream<'_, T> {
         let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
-        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+        RowStream { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 
     /// The rows of a statement whose parameters are a vehicle's id and the number of a policy.
@@ -48,9 +48,9 @@ impl Database {
         vehicle: &str,
         policy: Policy,
         read: fn(&SqliteRow) -> Sql<T>,
-    ) -> Streamed<'_, T> {
+    ) -> RowStream<'_, T> {
         let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle.to_owned()).bind(corridor_no(policy));
         let stream = query.fetch(&mut self.session.connection);
-        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+        RowStream { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 }

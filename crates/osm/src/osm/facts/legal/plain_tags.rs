@@ -4,7 +4,7 @@ use super::{Direction, Legal, Property, RuleTags};
 use crate::osm::facts::access::permission;
 use crate::osm::facts::keys::PASSAGE_KEYS;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Limit, Permission, told};
+use crate::osm::facts::{Limit, Permission, tag_lines};
 
 /// Keys of access for lorries and for all motor vehicles, the most specific one first.
 const HGV: [&str; 1] = ["hgv"];
@@ -42,7 +42,7 @@ impl RuleTags<'_> {
         let mut all: Vec<&(&str, &str)> = closing.chain(limits).collect();
         all.sort_unstable();
         let mut lines = String::new();
-        all.iter().for_each(|(key, value)| told::add(&mut lines, key, value));
+        all.iter().for_each(|(key, value)| tag_lines::add(&mut lines, key, value));
         (!lines.is_empty()).then(|| lines.into())
     }
 }
@@ -55,7 +55,9 @@ impl Legal {
             !of.is_some_and(&replaced)
         };
         let mut lines = String::new();
-        told::tags(self.tags.as_deref()).filter(stays).for_each(|(key, value)| told::add(&mut lines, key, value));
+        tag_lines::tags(self.tags.as_deref())
+            .filter(stays)
+            .for_each(|(key, value)| tag_lines::add(&mut lines, key, value));
         (!lines.is_empty()).then(|| lines.into())
     }
 
@@ -70,7 +72,7 @@ impl Legal {
         let restrictor = |(key, value): &(&str, &str)| {
             (*key, *value, property, limit) == ("barrier", "height_restrictor", Property::Height, Limit::Unreadable)
         };
-        let tags = || told::tags(self.tags.as_deref());
+        let tags = || tag_lines::tags(self.tags.as_deref());
         tags().find(says).or_else(|| tags().find(restrictor)).map(|(key, value)| joined(key, value))
     }
 
@@ -84,7 +86,7 @@ impl Legal {
             let is = |(key, value): &(&str, &str)| {
                 key.split(':').next() == Some(wanted) && permission(value, &mut Notes::default()) == permitted
             };
-            told::tags(self.tags.as_deref()).find(is)
+            tag_lines::tags(self.tags.as_deref()).find(is)
         };
         keys.iter().find_map(|key| says(key)).map(|(key, value)| joined(key, value))
     }
@@ -92,7 +94,7 @@ impl Legal {
     /// The tags that say how wide narrow places are, as `key=value`.
     #[must_use]
     pub fn passage_tags(&self) -> Vec<String> {
-        told::tags(self.tags.as_deref())
+        tag_lines::tags(self.tags.as_deref())
             .filter(|(key, _)| PASSAGE_KEYS.contains(key))
             .map(|(key, value)| joined(key, value))
             .collect()
@@ -103,7 +105,7 @@ impl Legal {
     pub fn barrier_tag(&self) -> Option<String> {
         let of = |(key, _): &(&str, &str)| matches!(*key, "barrier" | "locked");
         let tags: Vec<String> =
-            told::tags(self.tags.as_deref()).filter(of).map(|(key, value)| joined(key, value)).collect();
+            tag_lines::tags(self.tags.as_deref()).filter(of).map(|(key, value)| joined(key, value)).collect();
         (!tags.is_empty()).then(|| tags.join(", "))
     }
 }

@@ -10,7 +10,7 @@ use super::relative::{Peer, Standings};
 use super::roads::Roads;
 use crate::network::{EdgeNo, Movements, Network};
 use crate::osm::facts::Policy;
-use crate::rows::Standing;
+use crate::rows::CertificateStanding;
 use crate::stet::{Model, ModelError};
 use crate::store::{CertifiedSet, Database, QueryOptions, Reference, StoreError, TurnQuery};
 use crate::vehicle::Vehicle;
@@ -101,8 +101,8 @@ impl Standings {
 }
 
 /// Puts a standing at its index. Sets are complete, so nothing is left between; if it were, nothing would be known there.
-fn put(all: &mut Vec<Standing>, index: u32, standing: Standing) {
-    all.resize(all.len().max(index as usize + 1), Standing::bare(Verdict::Unknown(UnknownReason::Geometry)));
+fn put(all: &mut Vec<CertificateStanding>, index: u32, standing: CertificateStanding) {
+    all.resize(all.len().max(index as usize + 1), CertificateStanding::bare(Verdict::Unknown(UnknownReason::Geometry)));
     if let Some(slot) = all.get_mut(index as usize) {
         *slot = standing;
     }

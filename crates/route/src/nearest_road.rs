@@ -7,7 +7,7 @@ use crate::network::EdgeNo;
 
 /// The road nearest to a place, whatever its verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beside {
+pub struct NearestRoad {
     /// The edge, as an index into the network's edges.
     pub edge: EdgeNo,
     /// The point on it.
@@ -22,11 +22,11 @@ impl Planner {
     /// The road nearest to a place. Of two directions it is the first one that may not be used. `None` if there is no road within
     /// `most_m`, or if the nearest one may be used in all directions.
     #[must_use]
-    pub fn beside(&self, place: Position, most_m: f64) -> Option<Beside> {
+    pub fn beside(&self, place: Position, most_m: f64) -> Option<NearestRoad> {
         let snapped = self.snapper.snap(place, most_m, |_| true).ok()?;
         let permits = &self.driver.permits;
         let edge = snapped.on.iter().map(|goal| goal.edge).find(|&edge| !permits.edge(edge))?;
         let permit = *permits.edges.get(edge.index())?;
-        Some(Beside { edge, position: snapped.position, distance_m: snapped.distance_m, permit })
+        Some(NearestRoad { edge, position: snapped.position, distance_m: snapped.distance_m, permit })
     }
 }

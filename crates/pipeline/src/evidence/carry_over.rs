@@ -6,7 +6,7 @@ use crate::network::Network;
 use crate::reporter::Reporter;
 use crate::store::Register;
 use crate::words::Named as _;
-use netcert_evidence::{self as evidence, Entry, State, Target};
+use netcert_evidence::{self as evidence, Entry, MeasurementTarget, State};
 
 /// Notes on measurements that an ingest prints one by one.
 const MOST_NOTES: usize = 20;
@@ -53,9 +53,9 @@ fn difference(old: &Entry, new: &Entry) -> Option<String> {
 fn places(entry: &Entry) -> String {
     const TOLD: usize = 3;
     let told = entry.targets().take(TOLD).map(|target| match target {
-        Target::Edge(id) => format!("edge {id}"),
-        Target::Corner { node, edges: None } | Target::Area(node) => format!("junction {node}"),
-        Target::Corner { node, edges: Some([from, to]) } => {
+        MeasurementTarget::Edge(id) => format!("edge {id}"),
+        MeasurementTarget::Corner { node, edges: None } | MeasurementTarget::Area(node) => format!("junction {node}"),
+        MeasurementTarget::Corner { node, edges: Some([from, to]) } => {
             format!("the corner of edges {from} and {to} at node {node}")
         }
     });

@@ -8,7 +8,7 @@ use geo::{
     unary_union,
 };
 
-use super::swept::swept;
+use super::swept_ground::swept;
 use super::{Explanation, Geometry, TurnExplanation};
 use crate::corridor::{Corridor, Frame, outline};
 use crate::stet::motion::Pose;
@@ -28,7 +28,7 @@ const AHEAD_M: f64 = 3.0;
 
 /// The shapes of an explanation, metres in `frame`.
 #[derive(Debug, Clone)]
-pub(super) struct Drawn {
+pub(super) struct MapShapes {
     pub(super) frame: Frame,
     /// The surface that a turn may use at its junction. Empty for an edge.
     pub(super) area: MultiPolygon,
@@ -37,12 +37,12 @@ pub(super) struct Drawn {
     /// Straight road that the certificate assumes where a road ends, as far as the vehicle drives.
     pub(super) beyond: MultiPolygon,
     /// `None` if the turn has no path.
-    pub(super) motion: Option<Motion>,
+    pub(super) motion: Option<DrawnMotion>,
 }
 
 /// What the vehicle does.
 #[derive(Debug, Clone)]
-pub(super) struct Motion {
+pub(super) struct DrawnMotion {
     /// The planned path of the steer axle.
     pub(super) path: Vec<[f64; 2]>,
     /// For each unit, the ground that it sweeps.
@@ -51,13 +51,13 @@ pub(super) struct Motion {
     pub(super) poses: Vec<Pose>,
 }
 
-impl Drawn {
+impl MapShapes {
     /// The shapes of an edge. `None` without a corridor.
     pub(super) fn of_edge(e: &Explanation, stop: &Stop) -> Result<Option<Self>, Stopped> {
         let Some((g, frame)) = e.geometry.as_ref().and_then(|g| Some((g, g.frame?))) else { return Ok(None) };
         let behind = stations(&g.corridor, e.vehicle.length_m);
         let all = g.span.start..(g.span.end + behind).min(g.ride.len());
-        let motion = Motion::of(e, g, &near_the_tightest(g, all), stop)?;
+        let motion = DrawnMotion::of(e, g, &near_the_tightest(g, all), stop)?;
         let strip = unary_union(&strip(&g.corridor, g.span.clone(), [0.0; 2]));
         let none = MultiPolygon::new(Vec::new());
         Ok(Some(Self { frame, area: none.clone(), strip, beyond: none, motion: Some(motion) }))
@@ -74,7 +74,7 @@ impl Drawn {
             drawn.strip = beside(&unary_union(&strips(path, e.vehicle.length_m)), &drawn.area);
             let first = path.counted.start + stations(&path.corridor, e.vehicle.length_m);
             let heads = first.min(path.turn.start)..path.counted.end;
-            let motion = Motion::of(e, g, &heads, stop)?;
+            let motion = DrawnMotion::of(e, g, &heads, stop)?;
             let driven = MultiPolygon(motion.swept.iter().flatten().cloned().collect()).convex_hull();
             drawn.beyond = beside(&beside(&beyond(path).intersection(&driven), &drawn.area), &drawn.strip);
             drawn.motion = Some(motion);
@@ -83,7 +83,7 @@ impl Drawn {
     }
 }
 
-impl Motion {
+impl DrawnMotion {
     fn of(e: &Explanation, g: &Geometry, heads: &Range<usize>, stop: &Stop) -> Result<Self, Stopped> {
         let path = LineString::from(g.certificate.plan.get(g.span.clone()).unwrap_or_default().to_vec());
         let path = path.simplify(STRAIGHT_M).coords().map(|c| [c.x, c.y]).collect();
