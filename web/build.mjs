@@ -58,7 +58,9 @@ for (const file of styles) {
 }
 const css = await asset("page.css", styles.find((file) => file.path.endsWith(".css")).contents);
 
-const script = await bundle("src/main.ts", { define: { WORKER_URL: JSON.stringify(worker) } });
+// What traces areas is loaded when somebody traces.
+const tracer = await asset("trace.js", (await bundle("src/trace/trace.ts", {}))[0].contents);
+const script = await bundle("src/main.ts", { define: { WORKER_URL: JSON.stringify(worker), TRACE_URL: JSON.stringify(tracer) }, external: [tracer] });
 const js = await asset("page.js", script[0].contents);
 
 const html = (await readFile(join(here, "index.html"), "utf8")).replace("%CSS%", css).replace("%JS%", js);
@@ -68,13 +70,18 @@ await writeFile(join(out, "licences.txt"), await licences());
 
 /** What is bundled, and under which terms. */
 async function licences() {
+  const installed = (name) => join(here, "node_modules", name);
   const part = async (name, file) => {
-    const root = name.split("/").length > 1 && name.startsWith("@") ? name : name.split("/")[0];
-    const folder = join(here, "node_modules", root);
-    const { version } = JSON.parse(await readFile(join(folder, "package.json"), "utf8"));
-    const text = await readFile(join(folder, file), "utf8");
-    return `${name} ${version}\n\n${text.trim()}\n`;
+    const { version } = JSON.parse(await readFile(join(installed(name), "package.json"), "utf8"));
+    return `${name} ${version}\n\n${(await readFile(file, "utf8")).trim()}\n`;
   };
-  const all = [await part("maplibre-gl", "LICENSE.txt"), await part("@fontsource-variable/inter", "LICENSE")];
+  // Its packages name the licence and have no text of it.
+  const terraDraw = join(here, "licences/terra-draw.txt");
+  const all = [
+    await part("maplibre-gl", join(installed("maplibre-gl"), "LICENSE.txt")),
+    await part("@fontsource-variable/inter", join(installed("@fontsource-variable/inter"), "LICENSE")),
+    await part("terra-draw", terraDraw),
+    await part("terra-draw-maplibre-gl-adapter", terraDraw),
+  ];
   return all.join(`\n${"-".repeat(80)}\n\n`);
 }

@@ -47,8 +47,9 @@ pub(crate) struct Serve {
     /// As --edit, but only for who sends the token of this file, a line of 16 characters or more.
     #[arg(long, value_name = "FILE", conflicts_with = "edit")]
     edit_token: Option<PathBuf>,
-    /// Tiles of an online map that the reader of the page can switch on beneath the roads [default: none; no request
-    /// leaves this machine].
+    /// Tiles of an online map or of aerial pictures that the reader of the page can switch on beneath the roads: an
+    /// address with {z}, {x} and {y}, or that of a WMS with {bbox-epsg-3857} [default: none; no request leaves this
+    /// machine].
     #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
     base_map: Option<BaseMap>,
     /// The attribution to show while the base map is on, as its terms of use require [default: its host].

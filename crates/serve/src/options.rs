@@ -70,7 +70,7 @@ impl Editing {
 /// An online map to show beneath the roads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BaseMap {
-    /// The template of the tiles' addresses, with `{z}`, `{x}` and `{y}`.
+    /// The template of the tiles' addresses, with `{z}`, `{x}` and `{y}`, or with `{bbox-epsg-3857}` for a WMS.
     pub url: String,
     /// Scheme, host and port of `url`, which the page's content security policy allows.
     pub origin: String,
@@ -93,8 +93,9 @@ impl BaseMap {
                 "give a template with a plain host name, such as https://tiles.example.org/{z}/{x}/{y}.png".into()
             );
         }
-        if !["{z}", "{x}", "{y}"].iter().all(|part| url.contains(part)) || url.chars().any(char::is_control) {
-            return Err("give a template with {z}, {x} and {y}".into());
+        let has = |parts: &[&str]| parts.iter().all(|part| url.contains(part));
+        if !(has(&["{z}", "{x}", "{y}"]) || has(&["{bbox-epsg-3857}"])) || url.chars().any(char::is_control) {
+            return Err("give a template with {z}, {x} and {y}, or with {bbox-epsg-3857} for a WMS".into());
         }
         let attribution = format!("Base map: {host}");
         Ok(Self { url: url.to_owned(), origin: format!("{scheme}{host}"), attribution })
@@ -177,6 +178,8 @@ mod tests {
         assert_eq!(map.origin, "https://tiles.example.org:8443");
         assert!(map.attribution.contains("tiles.example.org"));
         assert_eq!(map.named("© the mappers").attribution, "© the mappers");
+        let wms = "https://wms.example.org/aerial?service=WMS&request=GetMap&crs=EPSG:3857&bbox={bbox-epsg-3857}";
+        assert_eq!(BaseMap::parse(wms).unwrap().origin, "https://wms.example.org");
         for wrong in [
             "tiles/{z}/{x}/{y}",
             "https:///{z}/{x}/{y}",

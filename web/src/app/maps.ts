@@ -6,6 +6,7 @@ import type { Position, Shapes } from "../api/types.ts";
 import { comparable, question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
 import { MapNote } from "../map/note.ts";
+import { palettes } from "../map/palette.ts";
 import { ShapesLayer } from "../map/shapes.ts";
 import { sync } from "../map/sync.ts";
 import { View, type Under } from "../map/view.ts";
@@ -14,7 +15,11 @@ import { VehicleCard } from "../panel/vehicle.ts";
 import type { Camera, State } from "../state.ts";
 import { byId, h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
+import type { Tracing } from "../trace/trace.ts";
 import { certifiedWords } from "../words.ts";
+
+/** The name of the bundle that traces areas; the build fills it in. */
+declare const TRACE_URL: string;
 
 export interface MapActions {
   click(under: Under | null, lon: number, lat: number): void;
@@ -37,6 +42,7 @@ export class Maps {
   readonly #shapes: ShapesLayer;
   #limit: Marker | undefined;
   #outline: Position[] = [];
+  #tracing = false;
   #second: { view: View; stop: () => void; pane: HTMLElement } | undefined;
 
   constructor(private readonly context: Context, private readonly actions: MapActions) {
@@ -66,6 +72,27 @@ export class Maps {
   number(stats: VehicleStats | null): void {
     const { other } = this.context.store.state;
     if (other) this.#card.show(vehicleOf(this.context, other), stats ? certifiedWords(stats.verdicts) : null);
+  }
+
+  /** Begins to trace an area on the first map. Clicks choose no road until it is closed. */
+  async trace(done: (ring: Position[]) => void): Promise<Tracing> {
+    const { trace } = (await import(TRACE_URL)) as typeof import("../trace/trace.ts");
+    this.#tracing = true;
+    const tracing = trace(this.first.map, palettes[this.context.theme.theme].ink, (ring) => {
+      // The click that closes the area is none on a road.
+      setTimeout(() => (this.#tracing = false));
+      done(ring);
+    });
+    const end = (): void => {
+      this.#tracing = false;
+      tracing.end();
+    };
+    return { end };
+  }
+
+  /** Whether clicks on the first map are corners of an area. */
+  get tracing(): boolean {
+    return this.#tracing;
   }
 
   home(): void {

@@ -64,6 +64,7 @@ export class Page {
       source: () => this.#source(),
       editing: region.editing,
       renew,
+      trace: (done) => this.#maps.trace(done),
       route: (end, place, name) => this.#routing.from(end, place, name),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
       changed: (id) => {
@@ -200,6 +201,7 @@ export class Page {
     const { store } = this.context;
     const { route } = store.state;
     const id = under?.id ?? null;
+    if (this.#maps.tracing) return;
     if (route && !complete(route)) this.#routing.take([lon, lat]);
     else if (under?.kind === "overview") this.#maps.approach(lon, lat);
     else if (!this.#routing.drive.under) {

@@ -11,6 +11,7 @@ import { measurements } from "./measure.ts";
 import { Picture } from "./picture.ts";
 import { headline, help, sentence } from "./plain.ts";
 import { suppose } from "./suppose.ts";
+import type { Trace } from "./traced.ts";
 
 /** The functions of the page that the panel uses. */
 export interface Around {
@@ -30,6 +31,8 @@ export interface Around {
   editing: Editing;
   /** Shows the page anew after a change of the database, with words about the change. */
   renew(words: string): void;
+  /** Traces an area on the map. */
+  trace: Trace;
   /** The change of a road or turn since the older database while changes are shown, and the words for it. */
   changed(id: string): { changed: Changed; note: HTMLElement } | null;
 }
@@ -130,7 +133,7 @@ export class ExplainPanel {
     }
     nodes.push(list("What else would do", help(own, question.policy)), this.#actions(own));
     if (own.suppose && own.verdict === "unsafe") nodes.push(suppose(id, question, own.suppose, (other) => this.around.select(other), this.#running!.signal));
-    nodes.push(...measurements(own, { editing: this.around.editing, vehicle: question.vehicle, renew: this.around.renew }));
+    nodes.push(...measurements(own, { ...this.around, vehicle: question.vehicle, signal: this.#running!.signal }));
     nodes.push(this.#key);
     nodes.push(details(own, id));
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))), h("div", { class: "print-only" }, this.around.source()));

@@ -1,4 +1,4 @@
-// What somebody measured here: a form that keeps a measurement, and the list of those that count. The server certifies again what sees a
+// What somebody measured here: forms that keep a measurement, and the list of those that count. The server certifies again what sees a
 // change. Only a server that was started for it takes changes.
 
 import { api, type ServerProblem } from "../api/client.ts";
@@ -6,6 +6,7 @@ import type { Editing, EvidenceChange, Explanation, Measured, Quantity } from ".
 import { h } from "../ui/dom.ts";
 import { length, spoken } from "../units.ts";
 import { quantityWords } from "../words.ts";
+import { tracer, type Trace } from "./traced.ts";
 
 /** What the form needs of the page. */
 export interface Keeping {
@@ -14,6 +15,10 @@ export interface Keeping {
   vehicle: string;
   /** Shows the page anew, with these words. */
   renew(words: string): void;
+  /** Traces an area on the map. */
+  trace: Trace;
+  /** Ends what is under way. */
+  signal: AbortSignal;
 }
 
 /** The token that was typed last. It is forgotten with the tab. */
@@ -35,9 +40,10 @@ function place(own: Explanation, quantity: Quantity): Record<string, string | nu
 export function measurements(own: Explanation, keeping: Keeping): Node[] {
   const { measurements: known } = own;
   const list = known.length > 0 ? [h("ul", {}, ...known.map((one) => line(one, keeping)))] : [];
-  const asked = own.suppose && keeping.editing !== "off" ? form(own, own.suppose.quantity, keeping) : null;
-  if (list.length === 0 && !asked) return [];
-  return [h("section", { class: "measured", "aria-label": "Measured" }, h("h3", {}, "Measured"), ...list, asked)];
+  const forms = keeping.editing === "off" ? [] : [own.suppose && form(own, own.suppose.quantity, keeping), traced(own, keeping)];
+  const shown = [...list, ...forms.filter((one) => one !== null)];
+  if (shown.length === 0) return [];
+  return [h("section", { class: "measured", "aria-label": "Measured" }, h("h3", {}, "Measured"), ...shown)];
 }
 
 /** One measurement, with a button that removes it. */
@@ -55,26 +61,50 @@ function line(one: Measured, keeping: Keeping): HTMLElement {
   return h("li", {}, words, remove, token.element, told);
 }
 
-/** The form for one measurement. Its value begins empty, so that nobody keeps what nobody measured. */
+/** The form for a number. Its value begins empty, so that nobody keeps what nobody measured. */
 function form(own: Explanation, quantity: Quantity, keeping: Keeping): HTMLElement | null {
   const where = place(own, quantity);
   if (!where) return null;
-  const unit = spoken() === "feet" ? "ft" : "m";
-  const number = (name: string, value: string) => h("input", { type: "number", name, min: 0, step: "any", inputmode: "decimal", required: true, value });
   const value = number("value", "");
-  const sigma = number("sigma", unit === "ft" ? "0.2" : "0.05");
+  const words = [h("p", {}, about(quantity)), labelled(`${quantityWords[quantity]}, ${unit()}`, value)];
+  const feature = (): Feature => ({ geometry: null, properties: { quantity, value: value.value, unit: unit(), ...where } });
+  return kept("I measured it", words, unit() === "ft" ? { value: "0.2", unit: "ft" } : { value: "0.05", unit: "m" }, keeping, feature);
+}
+
+/** The form for the paved surface of a junction. */
+function traced(own: Explanation, keeping: Keeping): HTMLElement | null {
+  if (own.kind !== "turn") return null;
+  const { element, ring } = tracer(keeping.trace, keeping.signal);
+  const words = [
+    h("p", {}, "What is paved at this junction, without kerbs and islands, as seen on an aerial picture. It counts beside the roads as they are known, drawn in by 1.64 times its uncertainty."),
+    element,
+  ];
+  const feature = (): Feature | string => {
+    const coordinates = ring();
+    return coordinates ? { geometry: { type: "Polygon", coordinates: [coordinates] }, properties: { quantity: "surface" } } : "Trace the surface first.";
+  };
+  // Of a surface it is in metres.
+  return kept("I traced what is paved", words, { value: "0.2", unit: "m" }, keeping, feature);
+}
+
+interface Feature {
+  geometry: object | null;
+  properties: Record<string, string | number>;
+}
+
+/** A form with who and when. `feature` is what is measured, or why it cannot be kept yet. `usual` is the usual uncertainty. */
+function kept(title: string, words: Node[], usual: { value: string; unit: string }, keeping: Keeping, feature: () => Feature | string): HTMLElement {
+  const sigma = number("sigma", usual.value);
   const source = h("input", { type: "text", name: "source", maxlength: 200, required: true, autocomplete: "off" });
   const date = h("input", { type: "date", name: "date", required: true, value: today() });
   const token = tokenField(keeping);
   const told = h("p", { class: "measured-told", role: "status" });
   const save = h("button", { class: "primary", type: "submit" }, "Keep it, and certify again");
-  const labelled = (words: string, input: HTMLElement) => h("label", {}, h("span", {}, words), input);
   const fields = h(
     "form",
     { class: "measure-form" },
-    h("p", {}, about(quantity)),
-    labelled(`${quantityWords[quantity]}, ${unit}`, value),
-    labelled(`Standard uncertainty, ${unit}`, sigma),
+    ...words,
+    labelled(`Standard uncertainty, ${usual.unit}`, sigma),
     labelled("Who measured it, with what", source),
     labelled("On", date),
     token.element,
@@ -83,12 +113,17 @@ function form(own: Explanation, quantity: Quantity, keeping: Keeping): HTMLEleme
   );
   fields.addEventListener("submit", (event) => {
     event.preventDefault();
-    const properties = { quantity, value: value.value, unit, sigma: sigma.value, source: source.value, date: date.value, ...where };
-    const feature = { type: "Feature", geometry: null, properties };
-    void change(save, told, () => api.measure(feature, token.value()), (answer) => kept(answer, told, keeping));
+    const made = feature();
+    if (typeof made === "string") return told.replaceChildren(made);
+    const properties = { ...made.properties, sigma: sigma.value, source: source.value, date: date.value };
+    void change(save, told, () => api.measure({ type: "Feature", geometry: made.geometry, properties }, token.value()), (answer) => tell(answer, told, keeping));
   });
-  return h("details", { class: "measure" }, h("summary", {}, "I measured it"), fields);
+  return h("details", { class: "measure" }, h("summary", {}, title), fields);
 }
+
+const unit = (): string => (spoken() === "feet" ? "ft" : "m");
+const number = (name: string, value: string) => h("input", { type: "number", name, min: 0, step: "any", inputmode: "decimal", required: true, value });
+const labelled = (words: string, input: HTMLElement) => h("label", {}, h("span", {}, words), input);
 
 /** What a measurement of this road or turn is about. */
 function about(quantity: Quantity): string {
@@ -112,7 +147,8 @@ async function change(button: HTMLButtonElement, told: HTMLElement, ask: () => P
   button.disabled = false;
 }
 
-function kept(answer: EvidenceChange, told: HTMLElement, keeping: Keeping): void {
+/** What became of a measurement. */
+function tell(answer: EvidenceChange, told: HTMLElement, keeping: Keeping): void {
   const [known, left, added] = [answer.known[0], answer.left_out[0], answer.added[0]];
   if (added) {
     const conflict = answer.conflicts.map(({ what }) => ` Conflict: ${what}.`).join("");
