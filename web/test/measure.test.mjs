@@ -2,10 +2,14 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { after } from "node:test";
 import { program } from "./databases.mjs";
-import { drawnRegion, text } from "./support.mjs";
+import { orthophoto } from "./orthophoto.mjs";
+import { drawnRegion, idle, text } from "./support.mjs";
 
-const editable = drawnRegion({ more: ["--edit"] });
+const photo = await orthophoto();
+after(() => photo.close());
+const editable = drawnRegion({ more: ["--edit", "--base-map", photo.template] });
 const reading = drawnRegion();
 const VEHICLE = "AU-SEMI19";
 
@@ -19,10 +23,15 @@ function row(db, wanted, ...more) {
   return found;
 }
 
-const fill = async (page, values) => {
-  await page.locator(".measure summary").click();
-  for (const [name, value] of Object.entries(values)) await page.locator(`.measure-form [name=${name}]`).fill(value);
+/** Opens the form with this title and fills it. Returns the form. */
+const fill = async (page, title, values) => {
+  const form = page.locator(".measure", { hasText: title });
+  await form.locator("summary").click();
+  for (const [name, value] of Object.entries(values)) await form.locator(`[name=${name}]`).fill(value);
+  return form;
 };
+const MEASURED = "I measured it";
+const TRACED = "I traced what is paved";
 const explained = (page) => page.waitForSelector(".explain .verdict", { timeout: 120_000 });
 const told = (page) => page.waitForFunction(() => document.querySelector(".toast.is-shown")?.textContent, null, { timeout: 120_000 }).then((found) => found.jsonValue());
 
@@ -33,7 +42,7 @@ editable.inPage("a kerb that is measured makes a turn certified in the same view
   await explained(page);
   assert.match(await text(page, ".explain .verdict"), /Not certified/);
   const url = page.url();
-  await fill(page, { value: String(turn.need_kerb_radius_m + 0.5), sigma: "0.1", source: "site plan", date: "2026-11-20" });
+  await fill(page, MEASURED, { value: String(turn.need_kerb_radius_m + 0.5), sigma: "0.1", source: "site plan", date: "2026-11-20" });
   await page.keyboard.press("Enter");
   assert.match(await told(page), /Kept as measurement 1\..*For AU-SEMI19 .* now certified/);
   await explained(page);
@@ -54,11 +63,63 @@ editable.inPage("what is faulty is said beside the form, and what was typed stay
   await page.goto(`${editable.all.address}/#v=${VEHICLE}&policy=lane&id=${edge.edge_id}`);
   await page.reload();
   await explained(page);
-  await fill(page, { value: "900", sigma: "0.05", source: "tape", date: "2026-11-20" });
-  await page.locator(".measure-form button").click();
+  const form = await fill(page, MEASURED, { value: "900", sigma: "0.05", source: "tape", date: "2026-11-20" });
+  await form.locator("button").click();
   await page.waitForFunction(() => /value /.test(document.querySelector(".measure-form .measured-told").textContent));
-  assert.equal(await page.locator(".measure-form [name=source]").inputValue(), "tape");
-  assert.ok(await page.locator(".measure-form button").isEnabled());
+  assert.equal(await form.locator("[name=source]").inputValue(), "tape");
+  assert.ok(await form.locator("button").isEnabled());
+});
+
+editable.inPage("a junction is traced on an aerial picture, and the surface counts", "", async (page, opened) => {
+  const turn = row(editable.all.db, (one) => one.verdict === "unsafe" && one.need_kerb_radius_m > 0 && one.kerb_source === "assumed", "--turns", "--corridor", "carriageway");
+  const { at: middle } = await editable.ask(`/api/explain/${turn.turn_id}?vehicle=${VEHICLE}&policy=carriageway`);
+  const half_m = 14;
+  photo.square = { middle, half_m };
+  await page.goto(`${editable.all.address}/#v=${VEHICLE}&policy=carriageway&id=${turn.turn_id}&at=18.5,${middle[1]},${middle[0]}`);
+  await page.reload();
+  await explained(page);
+  await page.evaluate(() => globalThis.netcert.store.set({ baseMap: true }));
+  await idle(page);
+  assert.ok(photo.asked.length > 0 && photo.asked.every(({ crs, bbox }) => crs === "EPSG:3857" && bbox.split(",").length === 4));
+
+  const form = await fill(page, TRACED, { sigma: "0.1", source: "orthophoto of 2026", date: "2026-11-20" });
+  await form.locator("button.primary").click();
+  assert.match(await form.locator(".measured-told").innerText(), /Trace the surface first/);
+  await form.getByRole("button", { name: "Trace it on the map" }).click();
+  await page.waitForFunction(() => /corner by corner/.test(document.querySelector(".tracer").textContent));
+  await page.waitForFunction(() => globalThis.netcert.map.getStyle().layers.some(({ id }) => id.startsWith("own-trace")));
+  const corners = await page.evaluate(
+    ([[lon, lat], reach]) => {
+      const { map } = globalThis.netcert;
+      const { left, top } = map.getCanvas().getBoundingClientRect();
+      const [east, north] = [reach / 111_320 / Math.cos((lat * Math.PI) / 180), reach / 111_320];
+      return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => {
+        const at = map.project([lon + x * east, lat + y * north]);
+        return [left + at.x, top + at.y];
+      });
+    },
+    [middle, half_m],
+  );
+  for (const [x, y] of [...corners, corners.at(-1)]) {
+    await page.mouse.move(x, y, { steps: 3 });
+    await page.mouse.click(x, y);
+  }
+  await page.waitForFunction(() => /Traced/.test(document.querySelector(".tracer").textContent));
+  const [, many, square] = (await text(page, ".tracer")).match(/Traced: (\d+) corners, (\d+) m²/);
+  assert.equal(many, "4");
+  assert.ok(Math.abs(Number(square) - 4 * half_m ** 2) < 40, square);
+  assert.match(page.url(), new RegExp(`id=${turn.turn_id}`), "a corner chooses no road");
+  await form.locator("button.primary").click();
+  assert.match(await told(page), /Kept as measurement \d+\./);
+  await explained(page);
+  assert.match(await text(page, ".measured"), /Paved surface, orthophoto of 2026, 2026-11-20/);
+  const kept = await editable.ask("/api/evidence");
+  const surface = kept.measurements.find(({ quantity }) => quantity === "surface");
+  assert.equal(surface.used, "counts");
+  assert.equal(surface.matched.length, 1);
+  // The picture is the only other machine that was asked.
+  assert.ok(opened.strangers.every((url) => url.startsWith(photo.at)));
+  opened.strangers.length = 0;
 });
 
 reading.inPage("a server that only reads has no form", "", async (page) => {

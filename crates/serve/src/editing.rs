@@ -28,6 +28,15 @@ pub(super) fn is_change(request: &Request, editing: &Editing) -> bool {
     change && *editing != Editing::Off
 }
 
+/// The methods of an address.
+pub(super) fn methods(path: &str, editing: &Editing) -> &'static str {
+    match path.strip_prefix(EVIDENCE) {
+        Some("") if *editing != Editing::Off => "GET, HEAD, POST",
+        Some(one) if one.starts_with('/') && *editing != Editing::Off => "GET, HEAD, DELETE",
+        _ => "GET, HEAD",
+    }
+}
+
 /// Why a change is refused, or `None` if it is not. `host` is what the request calls this server.
 pub(super) fn refusal(request: &Request, host: &str, editing: &Editing) -> Option<Problem> {
     let headers = request.headers();

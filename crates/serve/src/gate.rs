@@ -31,7 +31,12 @@ pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Ne
     if let Some(refused) = response.extensions().get::<RefusalReason>() {
         lines::refused(&method, &target, refused);
     }
+    let not_allowed = response.status() == StatusCode::METHOD_NOT_ALLOWED;
     let headers = response.headers_mut();
+    if not_allowed {
+        let methods = editing::methods(target.path(), &app.options.editing);
+        headers.insert(header::ALLOW, HeaderValue::from_static(methods));
+    }
     for (name, value) in FIXED_HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
@@ -62,7 +67,7 @@ fn content_security_policy(options: &ServerOptions) -> String {
 fn refusal(request: &Request, options: &ServerOptions) -> Option<Problem> {
     let change = editing::is_change(request, &options.editing);
     if !change && ![Method::GET, Method::HEAD].contains(request.method()) {
-        let detail = "this server only reads here: GET and HEAD";
+        let detail = format!("methods here are {}", editing::methods(request.uri().path(), &options.editing));
         return Some(Problem::new(StatusCode::METHOD_NOT_ALLOWED, "method", "The method is not allowed", detail));
     }
     let target = request.uri().path_and_query().map_or(0, |target| target.as_str().len());

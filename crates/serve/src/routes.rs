@@ -103,7 +103,8 @@ async fn region(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
 
 /// Describes the interface.
 async fn openapi(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
-    app.answer(ask, Pace::Quick, |_, ask| api::openapi(ask)).await
+    let editing = app.options.editing.clone();
+    app.answer(ask, Pace::Quick, move |_, ask| api::openapi(ask, &editing)).await
 }
 
 #[cfg(test)]

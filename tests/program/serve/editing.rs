@@ -205,6 +205,12 @@ fn nobody_changes_anything_who_may_not() {
     {
         server.send(method, target, KIND, &body).is_problem(target, 405);
     }
+    let allow = |server: &Server, target: &str| server.send("PUT", target, "", "").header("allow").unwrap().to_owned();
+    assert_eq!(allow(&server, "/api/evidence"), "GET, HEAD, POST");
+    assert_eq!(allow(&server, "/api/evidence/1"), "GET, HEAD, DELETE");
+    assert_eq!(allow(&reading, "/api/evidence"), "GET, HEAD");
+    let described = |server: &Server| server.json("/api/openapi.json")["paths"]["/api/evidence"]["post"].is_object();
+    assert!(described(&server) && !described(&reading));
     let head = "POST /api/evidence HTTP/1.1\r\nConnection: close\r\nContent-Type: application/json\r\n";
     server.raw(format!("{head}Host: evil.example\r\nContent-Length: 2\r\n\r\n{{}}").as_bytes()).is_problem("host", 421);
     let chunks = format!("{head}Host: localhost\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{{}}\r\n0\r\n\r\n");

@@ -21,6 +21,8 @@ export function trace(map: Map, colour: string, done: (ring: Position[]) => void
     adapter: new TerraDrawMapLibreGLAdapter({ map, prefixId: "own-trace", coordinatePrecision: PRECISION }),
     modes: [
       new TerraDrawPolygonMode({
+        // Corners of kerbs lie close to each other, and a click near the last one closes the area.
+        pointerDistance: 10,
         keyEvents: { cancel: null, finish: "Enter" },
         styles: { fillColor: colour as `#${string}`, fillOpacity: 0.25, outlineColor: colour as `#${string}`, outlineWidth: 3 },
       }),

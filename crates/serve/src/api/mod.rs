@@ -21,6 +21,7 @@ use serde_json::Value;
 
 use super::answer::StoredAnswer;
 use super::ask::{DecodedRequest, shortened};
+use super::options::Editing;
 use super::problem::Problem;
 
 const JSON: &str = "application/json";
@@ -30,10 +31,17 @@ const GEOJSON: &str = "application/geo+json";
 /// The description of the interface (OpenAPI 3.1). A test compares it with the answers.
 pub(super) const OPENAPI: &str = include_str!("../openapi.json");
 
-/// `/api/openapi.json`
-pub(super) fn openapi(ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
+/// `/api/openapi.json`. Where nothing may be changed, changes are not described.
+pub(super) fn openapi(ask: &DecodedRequest, editing: &Editing) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
-    Ok(StoredAnswer::new(JSON, OPENAPI.as_bytes().to_vec()))
+    if *editing != Editing::Off {
+        return Ok(StoredAnswer::new(JSON, OPENAPI.as_bytes().to_vec()));
+    }
+    let mut document: Value = serde_json::from_str(OPENAPI).map_err(|error| Problem::fault(error.to_string()))?;
+    for operations in document["paths"].as_object_mut().into_iter().flat_map(|paths| paths.values_mut()) {
+        operations.as_object_mut().into_iter().for_each(|methods| methods.retain(|method, _| method == "get"));
+    }
+    Ok(answered(&document))
 }
 
 fn answered(value: &Value) -> StoredAnswer {
