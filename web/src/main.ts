@@ -3,6 +3,7 @@
 import { setWorkerUrl } from "maplibre-gl";
 import { api } from "./api/client.ts";
 import { Page } from "./app/page.ts";
+import { baseMapBefore } from "./app/renew.ts";
 import type { Context } from "./context.ts";
 import { read } from "./link.ts";
 import { storedUnits } from "./units.ts";
@@ -24,7 +25,7 @@ async function start(): Promise<void> {
     policies: region.policies,
     changes: region.before !== null,
   };
-  const context: Context = { store: new Store(read(location.hash, first, possible)), region, vehicles, theme };
+  const context: Context = { store: new Store({ ...read(location.hash, first, possible), baseMap: baseMapBefore() && region.base_map !== null }), region, vehicles, theme };
   // Labels are drawn with the page's own font, so the font must be loaded before the first label.
   await Promise.race([document.fonts.load("600 16px 'Inter Variable'"), new Promise((done) => setTimeout(done, 1500))]);
   new Page(context, first, possible);

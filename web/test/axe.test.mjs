@@ -12,7 +12,7 @@ const options = {
   rules: { "label-content-name-mismatch": { enabled: true }, "target-size": { enabled: true } },
 };
 
-const { inPage } = drawnRegion();
+const { inPage } = drawnRegion({ more: ["--edit"] });
 
 const CORNER = "v=AU-ATRIPLE53&policy=carriageway&route=126.026942,-30.203315;126.046615,-30.205563";
 const narrow = { viewport: { width: 390, height: 780 } };
@@ -30,6 +30,10 @@ const states = [
   ["the welcome on a phone", "", () => {}, narrow],
   ["the page itself, in the dark", "#v=AU-SEMI19", () => {}, dark],
   ["a road that is not certified", "#v=AU-ATRIPLE53", (page) => explained(page, "unsafe")],
+  ["the form for a measurement, in the dark", "#v=AU-ATRIPLE53", async (page) => {
+    await explained(page, "unsafe");
+    await page.locator(".measure summary").first().click();
+  }, dark],
   ["a certified road, in the dark", "#v=AU-SEMI19", (page) => explained(page, "safe"), dark],
   ["the fields of a route with suggestions", "#v=AU-SEMI19", async (page) => {
     await page.keyboard.press("r");

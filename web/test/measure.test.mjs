@@ -33,7 +33,9 @@ const fill = async (page, title, values) => {
 const MEASURED = "I measured it";
 const TRACED = "I traced what is paved";
 const explained = (page) => page.waitForSelector(".explain .verdict", { timeout: 120_000 });
-const told = (page) => page.waitForFunction(() => document.querySelector(".toast.is-shown")?.textContent, null, { timeout: 120_000 }).then((found) => found.jsonValue());
+/** Waits until the page tells that something of this kind happened. */
+const told = (page, pattern) =>
+  page.waitForFunction((source) => new RegExp(source).test(document.querySelector(".toast.is-shown")?.textContent ?? ""), pattern.source, { timeout: 120_000 });
 
 editable.inPage("a kerb that is measured makes a turn certified in the same view, and removing it takes that back", "", async (page) => {
   const turn = row(editable.all.db, (one) => one.verdict === "unsafe" && one.need_kerb_radius_m > 0 && one.kerb_source === "assumed", "--turns", "--corridor", "carriageway");
@@ -41,10 +43,13 @@ editable.inPage("a kerb that is measured makes a turn certified in the same view
   await page.reload();
   await explained(page);
   assert.match(await text(page, ".explain .verdict"), /Not certified/);
+  // The link holds the place once the map has come to rest at the turn.
+  await page.waitForFunction(() => /at=17/.test(location.hash));
+  await idle(page);
   const url = page.url();
   await fill(page, MEASURED, { value: String(turn.need_kerb_radius_m + 0.5), sigma: "0.1", source: "site plan", date: "2026-11-20" });
   await page.keyboard.press("Enter");
-  assert.match(await told(page), /Kept as measurement 1\..*For AU-SEMI19 .* now certified/);
+  await told(page, /Kept as measurement 1\..*For AU-SEMI19 .* now certified/);
   await explained(page);
   assert.match(await text(page, ".explain .verdict"), /^Certified/);
   assert.equal(page.url(), url, "the same view");
@@ -52,13 +57,13 @@ editable.inPage("a kerb that is measured makes a turn certified in the same view
 
   page.on("dialog", (dialog) => dialog.accept());
   await page.locator(".measured li button").click();
-  assert.match(await told(page), /Removed\..*no longer certified/);
+  await told(page, /Removed\..*no longer certified/);
   await explained(page);
   assert.match(await text(page, ".explain .verdict"), /Not certified/);
   assert.equal(await page.locator(".measured li").count(), 0);
 });
 
-editable.inPage("what is faulty is said beside the form, and what was typed stays", "", async (page) => {
+editable.inPage("what is faulty is said beside the form, and what was typed stays", "", async (page, opened) => {
   const edge = row(editable.all.db, (one) => one.verdict === "unsafe" && one.reason === "width" && one.need_width_m > 0);
   await page.goto(`${editable.all.address}/#v=${VEHICLE}&policy=lane&id=${edge.edge_id}`);
   await page.reload();
@@ -68,6 +73,9 @@ editable.inPage("what is faulty is said beside the form, and what was typed stay
   await page.waitForFunction(() => /value /.test(document.querySelector(".measure-form .measured-told").textContent));
   assert.equal(await form.locator("[name=source]").inputValue(), "tape");
   assert.ok(await form.locator("button").isEnabled());
+  // The browser notes every refusal.
+  assert.equal(opened.errors.length, 1);
+  assert.match(opened.errors.pop(), /422/);
 });
 
 editable.inPage("a junction is traced on an aerial picture, and the surface counts", "", async (page, opened) => {
@@ -80,6 +88,8 @@ editable.inPage("a junction is traced on an aerial picture, and the surface coun
   await explained(page);
   await page.evaluate(() => globalThis.netcert.store.set({ baseMap: true }));
   await idle(page);
+  const paint = (name) => page.evaluate((one) => globalThis.netcert.map.getPaintProperty("base", one), name);
+  assert.equal(await paint("raster-opacity"), 0.45);
   assert.ok(photo.asked.length > 0 && photo.asked.every(({ crs, bbox }) => crs === "EPSG:3857" && bbox.split(",").length === 4));
 
   const form = await fill(page, TRACED, { sigma: "0.1", source: "orthophoto of 2026", date: "2026-11-20" });
@@ -88,6 +98,7 @@ editable.inPage("a junction is traced on an aerial picture, and the surface coun
   await form.getByRole("button", { name: "Trace it on the map" }).click();
   await page.waitForFunction(() => /corner by corner/.test(document.querySelector(".tracer").textContent));
   await page.waitForFunction(() => globalThis.netcert.map.getStyle().layers.some(({ id }) => id.startsWith("own-trace")));
+  assert.equal(await paint("raster-opacity"), 1, "one traces on the picture as it is");
   const corners = await page.evaluate(
     ([[lon, lat], reach]) => {
       const { map } = globalThis.netcert;
@@ -110,9 +121,10 @@ editable.inPage("a junction is traced on an aerial picture, and the surface coun
   assert.ok(Math.abs(Number(square) - 4 * half_m ** 2) < 40, square);
   assert.match(page.url(), new RegExp(`id=${turn.turn_id}`), "a corner chooses no road");
   await form.locator("button.primary").click();
-  assert.match(await told(page), /Kept as measurement \d+\./);
+  await told(page, /Kept as measurement \d+\./);
   await explained(page);
   assert.match(await text(page, ".measured"), /Paved surface, orthophoto of 2026, 2026-11-20/);
+  assert.ok(await page.evaluate(() => globalThis.netcert.store.state.baseMap), "the picture is still there");
   const kept = await editable.ask("/api/evidence");
   const surface = kept.measurements.find(({ quantity }) => quantity === "surface");
   assert.equal(surface.used, "counts");

@@ -78,6 +78,7 @@ export class Maps {
   async trace(done: (ring: Position[]) => void): Promise<Tracing> {
     const { trace } = (await import(TRACE_URL)) as typeof import("../trace/trace.ts");
     this.#tracing = true;
+    this.first.clear(true);
     const tracing = trace(this.first.map, palettes[this.context.theme.theme].ink, (ring) => {
       // The click that closes the area is none on a road.
       setTimeout(() => (this.#tracing = false));
@@ -85,6 +86,7 @@ export class Maps {
     });
     const end = (): void => {
       this.#tracing = false;
+      this.first.clear(false);
       tracing.end();
     };
     return { end };

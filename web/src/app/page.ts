@@ -63,7 +63,7 @@ export class Page {
       select: (selected) => store.set({ selected }),
       source: () => this.#source(),
       editing: region.editing,
-      renew,
+      renew: (words) => renew(words, store.state.baseMap),
       trace: (done) => this.#maps.trace(done),
       route: (end, place, name) => this.#routing.from(end, place, name),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),

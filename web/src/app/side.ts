@@ -128,7 +128,7 @@ export class Side {
     const { store, region } = this.context;
     if (!region.base_map) return null;
     const host = new URL(region.base_map.url.replaceAll(/[{}]/g, "")).host;
-    const input = h("input", { type: "checkbox", onchange: () => store.set({ baseMap: input.checked }) });
+    const input = h("input", { type: "checkbox", checked: store.state.baseMap, onchange: () => store.set({ baseMap: input.checked }) });
     return h("label", { class: "legend-row", title: `Asks ${host} for pictures of what you look at` }, input, h("span", { class: "legend-name" }, `Base map from ${host}`));
   }
 

@@ -220,6 +220,10 @@ function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground:
   };
 }
 
+/** The base map beneath roads that are to stand out, and as it is. */
+export const PALE_BASE = { "raster-opacity": 0.45, "raster-saturation": -0.7 };
+export const CLEAR_BASE: typeof PALE_BASE = { "raster-opacity": 1, "raster-saturation": 0 };
+
 /** The glow that makes the selected road stand out in a whole region. */
 function shine(palette: Palette): NonNullable<LineLayerSpecification["paint"]> {
   return { "line-color": palette.glow, "line-width": ["interpolate", ["linear"], ["zoom"], 9, 12, 14, 16, 19, 34], "line-blur": 1.5 };
@@ -268,7 +272,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
     },
     layers: [
       { id: "paper", type: "background", paint: { "background-color": palette.paper } },
-      ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
+      ...(base ? [{ id: "base", type: "raster", source: "base", paint: PALE_BASE } as LayerSpecification] : []),
       ...(base ? [] : behind(region, palette)),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
       // At low zooms the box keeps a small region from being lost.

@@ -10,7 +10,7 @@ import { CHANGES, changeLayers } from "./changes.ts";
 import { labelImage } from "./labels.ts";
 import type { Theme } from "./palette.ts";
 import { askEarly, tileAddress } from "./tiles.ts";
-import { OUTLINE, edgeLayers, muted, overviewLayers, style, turnLayers } from "./style.ts";
+import { CLEAR_BASE, OUTLINE, PALE_BASE, edgeLayers, muted, overviewLayers, style, turnLayers } from "./style.ts";
 
 /**
  * The tags of an edge or turn in a tile, or of a change. In an overview, those of all roads that fall on one line, without an id.
@@ -129,6 +129,13 @@ export class View {
   outline(coordinates: Position[]): void {
     const line: GeoJSON.Feature = { type: "Feature", properties: {}, geometry: { type: "LineString", coordinates } };
     void this.#ready.then(() => this.overlay(OUTLINE, { type: "FeatureCollection", features: coordinates.length > 1 ? [line] : [] }));
+  }
+
+  /** Shows the base map as it is, to trace on it, or pale again beneath the roads. */
+  clear(clear: boolean): void {
+    if (!this.map.getLayer("base")) return;
+    const paint = clear ? CLEAR_BASE : PALE_BASE;
+    for (const name of ["raster-opacity", "raster-saturation"] as const) this.map.setPaintProperty("base", name, paint[name]);
   }
 
   /** Draws GeoJSON under a name, above the roads; empty at first. */
