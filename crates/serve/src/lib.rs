@@ -1,9 +1,10 @@
-//! A read-only web server that shows one certified database on a map.
+//! A web server that shows one certified database on a map, and takes measurements if it is told to.
 //!
 //! - Every answer comes from the current state of the database file.
 //! - Every piece of work is bounded in size, time and number.
 //! - The server answers only requests that are meant for it, and only the addresses of its own tables.
 //! - Every answer that says `safe` also says the scope of `safe`.
+//! - Only measurements can be changed, only if an option says so, and only as `netcert evidence` does.
 //! - There is no log-in and no encryption, so the server listens on loopback only, unless told otherwise.
 //!
 //! | file | for |
@@ -12,6 +13,7 @@
 //! | `run` | listening, connections, stopping |
 //! | `routes` | the endpoint of every address |
 //! | `gate` | checks of every request, security headers of every response |
+//! | `editing` | who may change measurements |
 //! | `lines` | log lines for the operator of the server |
 //! | `ask` | names and parameters of a request |
 //! | `answer`, `cache` | entity tags, compression, conditional requests; the cache of answers |
@@ -29,7 +31,7 @@
 //!
 //! No module uses one above it. From below:
 //!
-//! 1. `options`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
+//! 1. `options`, `editing`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
 //! 2. `roads`, `search` and `region` read one file.
 //! 3. `older`, `changes`, `planning`, `drive` and `tiles` make results from regions. Each defines how many of its results are kept.
 //! 4. `api` answers from the values that an endpoint needs. `state` puts these values together.
