@@ -120,6 +120,8 @@ editable.inPage("a junction is traced on an aerial picture, and the surface coun
   assert.equal(many, "4");
   assert.ok(Math.abs(Number(square) - 4 * half_m ** 2) < 40, square);
   assert.match(page.url(), new RegExp(`id=${turn.turn_id}`), "a corner chooses no road");
+  await page.waitForFunction(() => /to spare if all of it were paved.*Supposed, not certified/.test(document.querySelector(".tracer").textContent), null, { timeout: 120_000 });
+  assert.equal((await editable.ask("/api/evidence")).measurements.length, 0, "nothing is kept yet");
   await form.locator("button.primary").click();
   await told(page, /Kept as measurement \d+\./);
   await explained(page);

@@ -27,5 +27,5 @@ pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, 
 pub use paths::{best_of, fits};
 pub use strokes::verdict;
 pub use strokes::{CertificationOutcome, by_cell, certify_network, certify_strokes, make_strokes};
-pub use suppose::{stroke_at_least, turn_with_kerb};
+pub use suppose::{stroke_at_least, turn_as_it_is, turn_with_kerb};
 pub use turns::{TurnJob, TurnOutcome, certify_some_turns, certify_turns, make_turns, turn_verdict};

@@ -47,10 +47,35 @@ pub fn turn_with_kerb(
     settings: &Settings,
     stop: &Stop,
 ) -> Result<Option<SpanResult>, Stopped> {
-    stop.check()?;
     let params = TurnParams { own_kerb_m: Some(radius_m), ..settings.turn_params() };
+    best_result(network, turn, &params, model, settings, stop)
+}
+
+/// The result of a turn on its best path on a network, such as one on which a surface is supposed. `None` as in [`turn_with_kerb`].
+///
+/// # Errors
+/// As [`turn_with_kerb`].
+pub fn turn_as_it_is(
+    network: &Network,
+    turn: &TurnFacts,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Option<SpanResult>, Stopped> {
+    best_result(network, turn, &settings.turn_params(), model, settings, stop)
+}
+
+fn best_result(
+    network: &Network,
+    turn: &TurnFacts,
+    params: &TurnParams,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Option<SpanResult>, Stopped> {
+    stop.check()?;
     let Some(reach) = LengthClass::of(&model.vehicle) else { return Ok(None) };
-    let Ok(made) = corridors_of(network, turn, settings.policy, &params, reach) else { return Ok(None) };
+    let Ok(made) = corridors_of(network, turn, settings.policy, params, reach) else { return Ok(None) };
     stop.check()?;
     let best = best_of(&made, &[model], &settings.stet).pop().flatten();
     stop.check()?;

@@ -130,6 +130,27 @@ impl App {
         }
     }
 
+    /// Answers a request with a body, which no cache keeps.
+    pub(super) async fn suppose(
+        self: &Arc<Self>,
+        ask: DecodedRequest,
+        work: impl FnOnce(&ServedState, &DecodedRequest) -> Result<StoredAnswer, Problem> + Send + 'static,
+    ) -> Response {
+        let served = match self.served().await {
+            Ok(served) => served,
+            Err(problem) => return problem.into_response(),
+        };
+        let mut asked = ask.clone();
+        let answer = self.slow.run(move |stop| {
+            asked.stop = stop;
+            work(&served, &asked)
+        });
+        match answer.await {
+            Ok(stored) => stored.respond(&ask, Keep::Ask),
+            Err(problem) => problem.into_response(),
+        }
+    }
+
     async fn try_answer(
         self: &Arc<Self>,
         ask: &DecodedRequest,

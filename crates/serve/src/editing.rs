@@ -9,6 +9,8 @@ use axum::http::{HeaderMap, HeaderName, Method, StatusCode, header};
 pub(super) use super::options::Editing;
 use super::problem::Problem;
 
+/// The address under which a turn's surface is supposed. The turn's id stands behind it.
+const SUPPOSE: &str = "/api/suppose/";
 /// The address of the register. A measurement has its number behind it.
 pub(super) const EVIDENCE: &str = "/api/evidence";
 /// The longest body, bytes.
@@ -16,12 +18,12 @@ pub(super) const MOST_BODY: usize = 1 << 20;
 /// The types of a body. A form of another site can have none of them.
 const TYPES: [&str; 2] = ["application/geo+json", "application/json"];
 
-/// Whether a request asks for a change, and the server takes changes.
+/// Whether a request asks for a change, or sends what is to be supposed, and the server takes changes.
 pub(super) fn is_change(request: &Request, editing: &Editing) -> bool {
     let rest = request.uri().path().strip_prefix(EVIDENCE);
     let one = rest.and_then(|rest| rest.strip_prefix('/'));
     let change = match *request.method() {
-        Method::POST => rest == Some(""),
+        Method::POST => rest == Some("") || request.uri().path().starts_with(SUPPOSE),
         Method::DELETE => one.is_some(),
         _ => false,
     };
@@ -31,6 +33,7 @@ pub(super) fn is_change(request: &Request, editing: &Editing) -> bool {
 /// The methods of an address.
 pub(super) fn methods(path: &str, editing: &Editing) -> &'static str {
     match path.strip_prefix(EVIDENCE) {
+        None if path.starts_with(SUPPOSE) && *editing != Editing::Off => "GET, HEAD, POST",
         Some("") if *editing != Editing::Off => "GET, HEAD, POST",
         Some(one) if one.starts_with('/') && *editing != Editing::Off => "GET, HEAD, DELETE",
         _ => "GET, HEAD",

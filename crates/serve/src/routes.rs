@@ -64,6 +64,7 @@ pub(super) fn router(app: Arc<App>) -> Router {
     router
         .route(editing::EVIDENCE, post(add_evidence))
         .route(&format!("{}/{{no}}", editing::EVIDENCE), delete(remove_evidence))
+        .route("/api/suppose/{id}", post(suppose_surface))
         .route("/healthz", get(health))
         .route("/api/region", get(region))
         .route("/api/openapi.json", get(openapi))
@@ -85,6 +86,11 @@ async fn health(State(app): State<Arc<App>>, ask: DecodedRequest) -> Response {
 /// Adds measurements to the register.
 async fn add_evidence(State(app): State<Arc<App>>, ask: DecodedRequest, body: Bytes) -> Response {
     app.change(ask, move |options, ask| api::evidence::add(options, ask, &body)).await
+}
+
+/// Supposes a surface that is sent.
+async fn suppose_surface(State(app): State<Arc<App>>, ask: DecodedRequest, body: Bytes) -> Response {
+    app.suppose(ask, move |served, ask| api::suppose::suppose_surface(&served.region, ask, &body)).await
 }
 
 /// Removes a measurement from the register.

@@ -144,8 +144,24 @@ fn the_kerb_of_a_turn_has_the_place_that_its_explanation_names() {
         "geometry": {"type": "Polygon", "coordinates": [ring]},
         "properties": {"quantity": "surface", "sigma": 0.1, "source": "orthophoto", "date": "2026-11-21"},
     });
+    let suppose = |what: &Value| {
+        let target = format!("/api/suppose/{}?vehicle={VEHICLE}", turn["turn_id"]);
+        server.send("POST", &target, KIND, &what.to_string())
+    };
+    let supposed = suppose(&surface).is_json();
+    is_described(&server, &supposed, "/api/suppose/{id}", "post");
+    assert_eq!((&supposed["safe"], &supposed["quantity"]), (&json!(false), &json!("surface")));
+    suppose(&kerb).is_problem("a kerb is no surface", 422);
+    let mut elsewhere = surface.clone();
+    elsewhere["geometry"]["coordinates"] = json!([[[0, 0], [0.001, 0], [0.001, 0.001], [0, 0]]]);
+    suppose(&elsewhere).is_problem("another place", 422);
+    assert_eq!(server.json("/api/evidence")["measurements"].as_array().unwrap().len(), 1, "nothing was kept");
     let answer = add(&server, KIND, &surface.to_string()).is_json();
     is_described(&server, &answer, "/api/evidence", "post");
+    let explained_then = server.json(&explain);
+    assert_eq!(explained_then["verdict"] == "safe", supposed["enough"] == true, "as it was supposed");
+    let (then, before) = (explained_then["limiting"]["rsc_m"].as_f64(), supposed["rsc_m"].as_f64());
+    assert!(then.zip(before).is_none_or(|(then, before)| (then - before).abs() < 2e-3), "{then:?} {before:?}");
     assert_eq!(answer["added"][0]["matched"][0]["surface_of"], explained["junction"], "{answer:#}");
     let quantities = server.json(&explain)["measurements"].clone();
     assert!(quantities.as_array().unwrap().iter().any(|one| one["quantity"] == "surface"), "{quantities:#}");

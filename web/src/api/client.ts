@@ -39,10 +39,10 @@ async function get<T>(path: string, query: Query, signal?: AbortSignal): Promise
   return send<T>(parameters ? `${path}?${parameters}` : path, signal ? { signal } : {});
 }
 
-/** Changes the register of measurements. */
-function change(method: "POST" | "DELETE", path: string, token: string | null, feature?: object): Promise<EvidenceChange> {
+/** What a server answers only if it takes measurements. */
+function change<T = EvidenceChange>(method: "POST" | "DELETE", path: string, token: string | null, feature?: object, signal?: AbortSignal): Promise<T> {
   const headers = { ...(feature ? { "content-type": "application/geo+json" } : {}), ...(token ? { authorization: `Bearer ${token}` } : {}) };
-  return send<EvidenceChange>(path, { method, headers, ...(feature ? { body: JSON.stringify(feature) } : {}) });
+  return send<T>(path, { method, headers, ...(feature ? { body: JSON.stringify(feature) } : {}), ...(signal ? { signal } : {}) });
 }
 
 async function send<T>(url: string, init: RequestInit): Promise<T> {
@@ -102,6 +102,9 @@ export const api = {
     `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
   suppose: (id: string, metres: number, question: Question, signal?: AbortSignal) =>
     get<Supposed>(`/api/suppose/${encodeURIComponent(id)}`, { ...asked(question), metres: metres.toFixed(2) }, signal),
+  /** What a turn would be with a surface, which is not kept. */
+  supposeSurface: (id: string, feature: object, question: Question, token: string | null, signal: AbortSignal) =>
+    change<Supposed>("POST", `/api/suppose/${encodeURIComponent(id)}?${written(asked(question))}`, token, feature, signal),
   /** Keeps a measurement: a GeoJSON feature as `netcert evidence add` reads it. */
   measure: (feature: object, token: string | null) => change("POST", "/api/evidence", token, feature),
   /** Removes a measurement by its number. */

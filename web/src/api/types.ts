@@ -191,6 +191,7 @@ export interface Explanation {
   kind: "edge" | "turn";
   /** The roads of a turn. */
   turn?: string;
+  turn_id?: string;
   /** Of a turn: the node at which it leaves its first road, and both roads. */
   junction?: string | null;
   from_edge?: string | null;
@@ -264,8 +265,9 @@ export interface EvidenceChange {
 /** The answer to a supposition, which is no certificate. */
 export interface Supposed {
   kind: "edge" | "turn";
-  quantity: Quantity;
-  supposed: number;
+  quantity: Quantity | "surface";
+  /** Null of a surface. */
+  supposed: number | null;
   enough: boolean;
   reason: string | null;
   rsc_m: number | null;

@@ -133,7 +133,7 @@ export class ExplainPanel {
     }
     nodes.push(list("What else would do", help(own, question.policy)), this.#actions(own));
     if (own.suppose && own.verdict === "unsafe") nodes.push(suppose(id, question, own.suppose, (other) => this.around.select(other), this.#running!.signal));
-    nodes.push(...measurements(own, { ...this.around, vehicle: question.vehicle, signal: this.#running!.signal }));
+    nodes.push(...measurements(own, { ...this.around, question, signal: this.#running!.signal }));
     nodes.push(this.#key);
     nodes.push(details(own, id));
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))), h("div", { class: "print-only" }, this.around.source()));

@@ -1,24 +1,33 @@
 // What somebody measured here: forms that keep a measurement, and the list of those that count. The server certifies again what sees a
 // change. Only a server that was started for it takes changes.
 
-import { api, type ServerProblem } from "../api/client.ts";
-import type { Editing, EvidenceChange, Explanation, Measured, Quantity } from "../api/types.ts";
+import { api, type Question, type ServerProblem } from "../api/client.ts";
+import type { Editing, EvidenceChange, Explanation, Measured, Position, Quantity } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
 import { length, spoken } from "../units.ts";
 import { quantityWords } from "../words.ts";
+import { verdict } from "./suppose.ts";
 import { tracer, type Trace } from "./traced.ts";
 
 /** What the form needs of the page. */
 export interface Keeping {
   editing: Editing;
-  /** The vehicle whose certificates are told of. */
-  vehicle: string;
+  /** The vehicle and policy whose certificates are told of. */
+  question: Question;
   /** Shows the page anew, with these words. */
   renew(words: string): void;
   /** Traces an area on the map. */
   trace: Trace;
   /** Ends what is under way. */
   signal: AbortSignal;
+}
+
+/** The usual uncertainty of an outline on an aerial picture. Of a surface it is in metres. */
+const SURFACE_SIGMA = { value: "0.2", unit: "m" };
+
+interface TokenField {
+  element: HTMLElement | null;
+  value(): string | null;
 }
 
 /** The token that was typed last. It is forgotten with the tab. */
@@ -56,7 +65,7 @@ function line(one: Measured, keeping: Keeping): HTMLElement {
   const token = tokenField(keeping);
   const go = async (): Promise<void> => {
     if (!window.confirm(`Remove this measurement?\n\n${words}`)) return;
-    await change(remove, told, () => api.forget(one.evidence_no, token.value()), (answer) => keeping.renew(`Removed. ${changes(answer, keeping.vehicle)}`));
+    await change(remove, told, () => api.forget(one.evidence_no, token.value()), (answer) => keeping.renew(`Removed. ${changes(answer, keeping.question.vehicle)}`));
   };
   return h("li", {}, words, remove, token.element, told);
 }
@@ -68,23 +77,36 @@ function form(own: Explanation, quantity: Quantity, keeping: Keeping): HTMLEleme
   const value = number("value", "");
   const words = [h("p", {}, about(quantity)), labelled(`${quantityWords[quantity]}, ${unit()}`, value)];
   const feature = (): Feature => ({ geometry: null, properties: { quantity, value: value.value, unit: unit(), ...where } });
-  return kept("I measured it", words, unit() === "ft" ? { value: "0.2", unit: "ft" } : { value: "0.05", unit: "m" }, keeping, feature);
+  const usual = unit() === "ft" ? { value: "0.2", unit: "ft" } : { value: "0.05", unit: "m" };
+  return kept("I measured it", words, usual, { ...keeping, token: tokenField(keeping) }, feature);
 }
 
 /** The form for the paved surface of a junction. */
 function traced(own: Explanation, keeping: Keeping): HTMLElement | null {
   if (own.kind !== "turn") return null;
-  const { element, ring } = tracer(keeping.trace, keeping.signal);
+  const token = tokenField(keeping);
+  const surface = (coordinates: Position[]): Feature => ({ geometry: { type: "Polygon", coordinates: [coordinates] }, properties: { quantity: "surface" } });
+  // What it comes to is said at once, with the usual uncertainty; what counts is what is kept.
+  const suppose = async (coordinates: Position[], told: HTMLElement): Promise<void> => {
+    const made = surface(coordinates);
+    const properties = { ...made.properties, sigma: SURFACE_SIGMA.value, source: "supposed" };
+    try {
+      const answer = await api.supposeSurface(own.turn_id ?? "", { type: "Feature", geometry: made.geometry, properties }, keeping.question, token.value(), keeping.signal);
+      told.replaceChildren(...verdict(answer, "if all of it were paved"));
+    } catch (error) {
+      if (!keeping.signal.aborted) told.replaceChildren((error as Error).message);
+    }
+  };
+  const { element, ring } = tracer(keeping.trace, (closed, told) => void suppose(closed, told), keeping.signal);
   const words = [
     h("p", {}, "What is paved at this junction, without kerbs and islands, as seen on an aerial picture. It counts beside the roads as they are known, drawn in by 1.64 times its uncertainty."),
     element,
   ];
   const feature = (): Feature | string => {
     const coordinates = ring();
-    return coordinates ? { geometry: { type: "Polygon", coordinates: [coordinates] }, properties: { quantity: "surface" } } : "Trace the surface first.";
+    return coordinates ? surface(coordinates) : "Trace the surface first.";
   };
-  // Of a surface it is in metres.
-  return kept("I traced what is paved", words, { value: "0.2", unit: "m" }, keeping, feature);
+  return kept("I traced what is paved", words, SURFACE_SIGMA, { ...keeping, token }, feature);
 }
 
 interface Feature {
@@ -93,11 +115,11 @@ interface Feature {
 }
 
 /** A form with who and when. `feature` is what is measured, or why it cannot be kept yet. `usual` is the usual uncertainty. */
-function kept(title: string, words: Node[], usual: { value: string; unit: string }, keeping: Keeping, feature: () => Feature | string): HTMLElement {
+function kept(title: string, words: Node[], usual: { value: string; unit: string }, keeping: Keeping & { token: TokenField }, feature: () => Feature | string): HTMLElement {
   const sigma = number("sigma", usual.value);
   const source = h("input", { type: "text", name: "source", maxlength: 200, required: true, autocomplete: "off" });
   const date = h("input", { type: "date", name: "date", required: true, value: today() });
-  const token = tokenField(keeping);
+  const { token } = keeping;
   const told = h("p", { class: "measured-told", role: "status" });
   const save = h("button", { class: "primary", type: "submit" }, "Keep it, and certify again");
   const fields = h(
@@ -152,7 +174,7 @@ function tell(answer: EvidenceChange, told: HTMLElement, keeping: Keeping): void
   const [known, left, added] = [answer.known[0], answer.left_out[0], answer.added[0]];
   if (added) {
     const conflict = answer.conflicts.map(({ what }) => ` Conflict: ${what}.`).join("");
-    keeping.renew(`Kept as measurement ${added.no}. ${changes(answer, keeping.vehicle)}${conflict}`);
+    keeping.renew(`Kept as measurement ${added.no}. ${changes(answer, keeping.question.vehicle)}${conflict}`);
   } else if (known) told.replaceChildren(`The register has it already, as measurement ${known.no}.`);
   else told.replaceChildren(`Not kept: ${left?.why ?? "its place was not found"}.`);
 }
@@ -167,7 +189,7 @@ export function changes(answer: Pick<EvidenceChange, "sets">, vehicle: string): 
 }
 
 /** The field for the token, where the server wants one. */
-function tokenField({ editing }: Keeping): { element: HTMLElement | null; value: () => string | null } {
+function tokenField({ editing }: Keeping): TokenField {
   if (editing !== "token") return { element: null, value: () => null };
   const input = h("input", { type: "password", name: "token", required: true, autocomplete: "off", value: sessionStorage.getItem(TOKEN) ?? "" });
   const value = (): string => {

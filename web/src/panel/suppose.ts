@@ -48,7 +48,7 @@ export function suppose(id: string, question: Question, own: Supposable, select:
     const both = AbortSignal.any([running.signal, signal]);
     try {
       const answer = await api.suppose(id, metres, question, both);
-      told.replaceChildren(...verdict(answer));
+      told.replaceChildren(...verdict(answer, `if ${things[quantity]} were ${wide(quantity, metres)}`));
       opens.replaceChildren(...others(answer, select));
     } catch (error) {
       if (!both.aborted) told.replaceChildren((error as Error).message);
@@ -88,12 +88,13 @@ function need({ quantity, need, need_flare }: Supposable, set: (metres: number) 
   return h("p", { class: "suppose-need" }, `${unknown} Look with the slider.`);
 }
 
-function verdict({ quantity, supposed, enough, reason, rsc_m }: Supposed): (Node | string)[] {
+/** What a supposition comes to. `condition` says what is supposed. */
+export function verdict({ enough, reason, rsc_m }: Supposed, condition: string): (Node | string)[] {
   const room = rsc_m === null || rsc_m < -100 ? "far too little room" : `${careful(rsc_m)} ${rsc_m < 0 ? "missing" : "to spare"}`;
   const number = enough || reason === "width" ? room : reasonWords("unsafe", reason);
   return [
     h("strong", {}, number),
-    ` if ${things[quantity]} were ${wide(quantity, supposed)}. `,
+    ` ${condition}. `,
     h("span", { class: enough ? "suppose-enough" : "" }, enough ? "That would do. Supposed, not certified." : "That would not do."),
   ];
 }

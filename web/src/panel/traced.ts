@@ -19,8 +19,11 @@ export function area(ring: readonly Position[]): number {
   return Math.abs(twice) / 2;
 }
 
-/** A button that traces, and what is said of it. `ring` is the traced ring, or null. `signal` takes the area off the map. */
-export function tracer(trace: Trace, signal: AbortSignal): { element: HTMLElement; ring: () => Position[] | null } {
+/**
+ * A button that traces, and what is said of it. `ring` is the traced ring, or null. `closed` adds to what is said once there is one. `signal`
+ * takes the area off the map.
+ */
+export function tracer(trace: Trace, closed: (ring: Position[], told: HTMLElement) => void, signal: AbortSignal): { element: HTMLElement; ring: () => Position[] | null } {
   let ring: Position[] | null = null;
   let tracing: Tracing | null = null;
   const said = h("p", { role: "status" });
@@ -33,10 +36,12 @@ export function tracer(trace: Trace, signal: AbortSignal): { element: HTMLElemen
     end();
     said.replaceChildren("Click on the map, corner by corner, along the edge of what is paved. Click on the last corner again, or press Enter on the map, to close it.");
     button.textContent = "Trace it anew";
-    tracing = await trace((closed) => {
-      ring = closed;
-      const square = spoken() === "feet" ? `${Math.round(area(closed) / FOOT_M ** 2)} square feet` : `${Math.round(area(closed))} m²`;
-      said.replaceChildren(`Traced: ${closed.length - 1} corners, ${square}.`);
+    tracing = await trace((made) => {
+      ring = made;
+      const square = spoken() === "feet" ? `${Math.round(area(made) / FOOT_M ** 2)} square feet` : `${Math.round(area(made))} m²`;
+      const told = h("span", {});
+      said.replaceChildren(`Traced: ${made.length - 1} corners, ${square}. `, told);
+      closed(made, told);
     });
     if (signal.aborted) end();
   };

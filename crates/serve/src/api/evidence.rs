@@ -12,11 +12,11 @@ use crate::osm::{LonLat, rounded};
 use crate::reporter::Silent;
 use crate::store::Database;
 use crate::words::Named as _;
-use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, MeasurementTarget, Usage};
+use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, MeasurementRow, MeasurementTarget, Usage};
 use netcert_pipeline::{self as pipeline, EvidenceChange, EvidenceChanged, RunError, SetChanged, VerdictChanges, What};
 
 /// What stands for the name of a file in the register and in what is said.
-const FILE: &str = "page";
+pub(super) const FILE: &str = "page";
 
 /// `GET /api/evidence`
 pub(in super::super) fn list(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
@@ -47,7 +47,7 @@ pub(in super::super) fn add(
         Some("true") => true,
         Some(_) => return Err(Problem::parameter("dry_run", "give true or false")),
     };
-    let rows = evidence::read_geojson(FILE, body).map_err(|error| faulty(&error))?;
+    let rows = rows_of(body)?;
     change(options, What::Add { file: FILE.to_owned(), rows, matched_only: true }, dry_run)
 }
 
@@ -65,6 +65,11 @@ fn change(options: &ServerOptions, what: What, dry_run: bool) -> Result<StoredAn
         other => Problem::fault(other.to_string()),
     })?;
     Ok(answered(&told(&changed, dry_run)))
+}
+
+/// The measurements of a body.
+pub(super) fn rows_of(body: &[u8]) -> Result<Vec<MeasurementRow>, Problem> {
+    evidence::read_geojson(FILE, body).map_err(|error| faulty(&error))
 }
 
 /// Every fault of the measurements of a request.

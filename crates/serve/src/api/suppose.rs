@@ -11,7 +11,7 @@ use super::super::problem::Problem;
 use super::super::region::{CertifiedVehicle, RegionState};
 use super::super::roads::RoadIndex;
 use super::{answered, id};
-use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_with_kerb, verdict};
+use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need, stroke_at_least, turn_as_it_is, turn_with_kerb, verdict};
 use crate::network::{EdgeNo, Network};
 use crate::osm::facts::Policy;
 use crate::route::{CONDITIONAL, PartKind, title};
@@ -19,10 +19,11 @@ use crate::rows::{EdgeRow, SetKey, TurnRow};
 use crate::settings::{Needs, Settings};
 use crate::stet::{Model, SpanResult};
 use crate::stop::Stop;
-use crate::store::{QueryOptions, TurnQuery};
+use crate::store::{Database, QueryOptions, TurnQuery};
 use crate::turns::TurnFacts;
 use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::{Named, verdict_words};
+use netcert_evidence::{self as evidence, Entry, MeasurementRow, MeasurementTarget, Quantity};
 
 /// The steps of a slider, metres. Needs are in steps that these meet.
 const WIDTH_STEP_M: f64 = 0.05;
@@ -50,6 +51,35 @@ pub(in super::super) fn suppose(region: &RegionState, ask: &DecodedRequest) -> R
         Some(edge) => case.edge(edge, metres(ask, MOST_WIDTH_M)?)?,
         None => case.turn(id, metres(ask, MOST_KERB_M)?)?,
     };
+    members["vehicle"] = json!(certified.vehicle.id);
+    members["policy"] = json!(policy.name());
+    members["unit"] = json!("m");
+    members["safe"] = json!(false);
+    members["scope"] = json!(SCOPE);
+    Ok(answered(&members))
+}
+
+/// `POST /api/suppose/{id}`: the turn with the surface of the body, which is not kept.
+pub(in super::super) fn suppose_surface(
+    region: &RegionState,
+    ask: &DecodedRequest,
+    body: &[u8],
+) -> Result<StoredAnswer, Problem> {
+    ask.only(&["vehicle", "policy"])?;
+    let id = id(ask.name("id")?)?;
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    let certified = region.certified(ask.required("vehicle")?, policy)?;
+    let rows = super::evidence::rows_of(body)?;
+    if rows.iter().any(|row| row.quantity != Quantity::Surface) {
+        return Err(Problem::faulty(
+            "only surfaces can be supposed so; `metres` supposes a width or a radius",
+            Vec::new(),
+        ));
+    }
+    let roads = region.roads()?;
+    let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
+    let case = Case { region, roads: &roads, certified: &certified, model: &model, stop: &ask.stop };
+    let mut members = case.surface(id, rows)?;
     members["vehicle"] = json!(certified.vehicle.id);
     members["policy"] = json!(policy.name());
     members["unit"] = json!("m");
@@ -127,6 +157,32 @@ impl Case<'_> {
         let (vehicle, policy) = (&self.certified.vehicle.id, self.settings().policy);
         let options = QueryOptions { edge_id: Some(edge_id), ..QueryOptions::new(vehicle, policy) };
         self.region.read(|database| database.query(&options)?.next().transpose())
+    }
+
+    /// The turn, if the surfaces of these rows were paved, beside what is measured already.
+    fn surface(&self, id: i64, rows: Vec<MeasurementRow>) -> Result<Value, Problem> {
+        let facts = self.roads.turn(id, self.settings())?;
+        let facts = facts.ok_or_else(|| Problem::not_found(format!("{id}: no turn of this database")))?;
+        let mut register = self.region.read(Database::register)?;
+        let mut network = self.network().clone();
+        let added = evidence::entries(&network, super::evidence::FILE, rows, register.last_no + 1);
+        let node = network.edges.get(facts.movement.from.index()).map(|edge| edge.to_node);
+        let here = |entry: &Entry| entry.targets().any(|target| Some(target) == node.map(MeasurementTarget::Area));
+        if let Some(elsewhere) = added.iter().find(|entry| !here(entry)) {
+            let why = elsewhere.why.as_deref().unwrap_or("it surrounds another junction");
+            return Err(Problem::faulty(format!("the surface is not that of this turn's junction: {why}"), Vec::new()));
+        }
+        register.entries.extend(added);
+        network.site = evidence::decide(&network, &mut register.entries).site;
+        let result = turn_as_it_is(&network, &facts, self.model, self.settings(), self.stop)?;
+        let mut members = result_members(result.as_ref());
+        members["kind"] = json!("turn");
+        members["turn_id"] = json!(id.to_string());
+        members["quantity"] = json!("surface");
+        for unknown in ["supposed", "now", "need", "need_flare"] {
+            members[unknown] = Value::Null;
+        }
+        Ok(members)
     }
 
     fn turn(&self, id: i64, radius_m: f64) -> Result<Value, Problem> {
