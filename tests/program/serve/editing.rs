@@ -152,6 +152,9 @@ fn the_kerb_of_a_turn_has_the_place_that_its_explanation_names() {
     is_described(&server, &supposed, "/api/suppose/{id}", "post");
     assert_eq!((&supposed["safe"], &supposed["quantity"]), (&json!(false), &json!("surface")));
     suppose(&kerb).is_problem("a kerb is no surface", 422);
+    let forbidden = turns.iter().find(|turn| turn["verdict"] == "forbidden").unwrap();
+    let target = format!("/api/suppose/{}?vehicle={VEHICLE}", forbidden["turn_id"]);
+    server.send("POST", &target, KIND, &surface.to_string()).is_problem("forbidden", 404);
     let mut elsewhere = surface.clone();
     elsewhere["geometry"]["coordinates"] = json!([[[0, 0], [0.001, 0], [0.001, 0.001], [0, 0]]]);
     suppose(&elsewhere).is_problem("another place", 422);

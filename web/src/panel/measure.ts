@@ -4,6 +4,7 @@
 import { api, type Question, type ServerProblem } from "../api/client.ts";
 import type { Editing, EvidenceChange, Explanation, Measured, Position, Quantity } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
+import { kept, put } from "../ui/tab.ts";
 import { length, spoken } from "../units.ts";
 import { quantityWords } from "../words.ts";
 import { verdict } from "./suppose.ts";
@@ -78,12 +79,12 @@ function form(own: Explanation, quantity: Quantity, keeping: Keeping): HTMLEleme
   const words = [h("p", {}, about(quantity)), labelled(`${quantityWords[quantity]}, ${unit()}`, value)];
   const feature = (): Feature => ({ geometry: null, properties: { quantity, value: value.value, unit: unit(), ...where } });
   const usual = unit() === "ft" ? { value: "0.2", unit: "ft" } : { value: "0.05", unit: "m" };
-  return kept("I measured it", words, usual, { ...keeping, token: tokenField(keeping) }, feature);
+  return keepForm("I measured it", words, usual, { ...keeping, token: tokenField(keeping) }, feature);
 }
 
 /** The form for the paved surface of a junction. */
 function traced(own: Explanation, keeping: Keeping): HTMLElement | null {
-  if (own.kind !== "turn") return null;
+  if (own.kind !== "turn" || (own.verdict !== "safe" && own.verdict !== "unsafe")) return null;
   const token = tokenField(keeping);
   const surface = (coordinates: Position[]): Feature => ({ geometry: { type: "Polygon", coordinates: [coordinates] }, properties: { quantity: "surface" } });
   // What it comes to is said at once, with the usual uncertainty; what counts is what is kept.
@@ -106,7 +107,7 @@ function traced(own: Explanation, keeping: Keeping): HTMLElement | null {
     const coordinates = ring();
     return coordinates ? surface(coordinates) : "Trace the surface first.";
   };
-  return kept("I traced what is paved", words, SURFACE_SIGMA, { ...keeping, token }, feature);
+  return keepForm("I traced what is paved", words, SURFACE_SIGMA, { ...keeping, token }, feature);
 }
 
 interface Feature {
@@ -115,7 +116,7 @@ interface Feature {
 }
 
 /** A form with who and when. `feature` is what is measured, or why it cannot be kept yet. `usual` is the usual uncertainty. */
-function kept(title: string, words: Node[], usual: { value: string; unit: string }, keeping: Keeping & { token: TokenField }, feature: () => Feature | string): HTMLElement {
+function keepForm(title: string, words: Node[], usual: { value: string; unit: string }, keeping: Keeping & { token: TokenField }, feature: () => Feature | string): HTMLElement {
   const sigma = number("sigma", usual.value);
   const source = h("input", { type: "text", name: "source", maxlength: 200, required: true, autocomplete: "off" });
   const date = h("input", { type: "date", name: "date", required: true, value: today() });
@@ -163,8 +164,9 @@ async function change(button: HTMLButtonElement, told: HTMLElement, ask: () => P
     done(await ask());
   } catch (error) {
     const { problem } = error as ServerProblem;
-    if (problem?.status === 401) sessionStorage.removeItem(TOKEN);
-    told.replaceChildren(...(problem?.faults?.map(({ column, what }) => h("span", {}, `${column} ${what}. `)) ?? [(error as Error).message]));
+    if (problem?.status === 401) put(TOKEN, null);
+    const faults = problem?.faults ?? [];
+    told.replaceChildren(...(faults.length > 0 ? faults.map(({ column, what }) => h("span", {}, `${column} ${what}. `)) : [(error as Error).message]));
   }
   button.disabled = false;
 }
@@ -191,9 +193,9 @@ export function changes(answer: Pick<EvidenceChange, "sets">, vehicle: string): 
 /** The field for the token, where the server wants one. */
 function tokenField({ editing }: Keeping): TokenField {
   if (editing !== "token") return { element: null, value: () => null };
-  const input = h("input", { type: "password", name: "token", required: true, autocomplete: "off", value: sessionStorage.getItem(TOKEN) ?? "" });
+  const input = h("input", { type: "password", name: "token", required: true, autocomplete: "off", value: kept(TOKEN) ?? "" });
   const value = (): string => {
-    sessionStorage.setItem(TOKEN, input.value);
+    put(TOKEN, input.value);
     return input.value;
   };
   return { element: h("label", {}, h("span", {}, "Token of this server"), input), value };

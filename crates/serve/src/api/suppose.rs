@@ -159,10 +159,20 @@ impl Case<'_> {
         self.region.read(|database| database.query(&options)?.next().transpose())
     }
 
+    /// The row of a turn. Where the turn is forbidden, nothing that is paved or round helps.
+    fn unless_forbidden(&self, id: i64, what: &str) -> Result<Option<TurnRow>, Problem> {
+        let row = turn_row(self.region, &self.certified.vehicle.id, self.settings().policy, id)?;
+        if row.as_ref().is_some_and(|row| matches!(row.certificate.verdict, Verdict::Forbidden(_))) {
+            return Err(Problem::not_found(format!("turn {id}: a rule decides there, and {what}")));
+        }
+        Ok(row)
+    }
+
     /// The turn, if the surfaces of these rows were paved, beside what is measured already.
     fn surface(&self, id: i64, rows: Vec<MeasurementRow>) -> Result<Value, Problem> {
         let facts = self.roads.turn(id, self.settings())?;
         let facts = facts.ok_or_else(|| Problem::not_found(format!("{id}: no turn of this database")))?;
+        self.unless_forbidden(id, "no surface helps")?;
         let mut register = self.region.read(Database::register)?;
         let mut network = self.network().clone();
         let added = evidence::entries(&network, super::evidence::FILE, rows, register.last_no + 1);
@@ -191,10 +201,7 @@ impl Case<'_> {
             facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
         let no_kerb = || Problem::not_found(format!("turn {id}: it has no kerb radius that another one could replace"));
         let now_m = facts.kerb_radius_m.ok_or_else(no_kerb)?;
-        let row = turn_row(self.region, &self.certified.vehicle.id, self.settings().policy, id)?;
-        if row.as_ref().is_some_and(|row| matches!(row.certificate.verdict, Verdict::Forbidden(_))) {
-            return Err(Problem::not_found(format!("turn {id}: a rule decides there, and no kerb radius helps")));
-        }
+        let row = self.unless_forbidden(id, "no kerb radius helps")?;
         let result = turn_with_kerb(self.network(), &facts, radius_m, self.model, self.settings(), self.stop)?;
         let mut members = result_members(result.as_ref());
         members["kind"] = json!("turn");
