@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
-use netcert::evidence::{self, Along, Entry, MeasurementTarget, Place, State, Usage, Value};
+use netcert::evidence::{self, Entry, MeasurementTarget, State, Usage, Value};
 use netcert::pipeline::{self, EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What};
 use netcert::store::Database;
 use netcert::words::Named;
@@ -278,7 +278,7 @@ impl List {
         let entries = register.entries.iter().filter(|entry| self.state.is_none_or(|state| entry.state == state));
         let mut out = results();
         if self.format == Format::Json {
-            let all: Vec<_> = entries.map(described).collect();
+            let all: Vec<_> = entries.map(Entry::json).collect();
             writeln!(out, "{:#}", json!(all))?;
             return Ok(out.flush()?);
         }
@@ -335,62 +335,7 @@ impl Show {
             bail!("{}: no measurement {}; `netcert evidence list` shows the numbers", path.display(), self.number);
         };
         let mut out = results();
-        writeln!(out, "{:#}", described(entry))?;
+        writeln!(out, "{:#}", entry.json())?;
         Ok(out.flush()?)
     }
-}
-
-/// A measurement as JSON.
-fn described(entry: &Entry) -> serde_json::Value {
-    let row = &entry.row;
-    let (value, unit) = match &row.value {
-        Value::Metres(m) => (json!(m), json!("m")),
-        Value::Tonnes(t) => (json!(t), json!("t")),
-        Value::Vehicle(id) => (json!(id), json!(null)),
-        Value::Polygon(rings) => (json!(rings.iter().map(|ring| positions(ring)).collect::<Vec<_>>()), json!(null)),
-    };
-    let place = match &row.place {
-        Place::Way { way_id, nodes } => json!({"way_id": way_id, "nodes": nodes}),
-        Place::Edge(id) => json!({"edge_id": id, "way_id": row.way_id}),
-        Place::Junction { node, edges } => json!({"junction": node, "edges": edges}),
-        Place::Line(line) => json!({"line": positions(line)}),
-        Place::Point(at) => json!({"point": positions(&[*at])[0]}),
-        Place::Polygon(ring) => json!({"polygon": positions(ring)}),
-    };
-    let matched: Vec<_> = entry
-        .places
-        .iter()
-        .map(|&(target, counts)| match target {
-            MeasurementTarget::Edge(id) => json!({"edge_id": id, "counts": counts}),
-            MeasurementTarget::Corner { node, edges } => json!({"junction": node, "edges": edges, "counts": counts}),
-            MeasurementTarget::Area(node) => json!({"surface_of": node, "counts": counts}),
-        })
-        .collect();
-    let direction = if row.along == Along::Both { None } else { Some(row.along.name()) };
-    json!({
-        "no": entry.no,
-        "file": entry.file,
-        "row": row.number,
-        "id": row.id,
-        "quantity": row.quantity.name(),
-        "value": value,
-        "unit": unit,
-        "sigma": row.sigma,
-        "counts": row.lower(),
-        "place": place,
-        "direction": direction,
-        "source": row.source,
-        "date": row.date,
-        "licence": row.licence,
-        "name": row.name,
-        "note": row.note,
-        "state": entry.state.name(),
-        "used": entry.usage().map(Usage::name),
-        "why": entry.why,
-        "matched": matched,
-    })
-}
-
-fn positions(line: &[netcert::osm::LonLat]) -> Vec<[f64; 2]> {
-    line.iter().map(|at| netcert::osm::rounded(at.degrees().into())).collect()
 }

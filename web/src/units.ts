@@ -64,6 +64,11 @@ export function roadLength(metres: number): string {
   return many < 10 ? `${many.toFixed(1)} ${name}` : `${whole.format(many)} ${name}`;
 }
 
+/** An area of ground: `784 m²`, or `8,439 square feet`. */
+export function square(metres2: number): string {
+  return units === "metres" ? `${whole.format(metres2)} m²` : `${whole.format(metres2 / (12 * INCH_M) ** 2)} square feet`;
+}
+
 /** A distance along a way: `240 m` or `3.41 km`, or `790 ft` or `2.12 mi`. */
 export function distance(metres: number): string {
   if (units === "metres") return metres < 1000 ? `${whole.format(metres)} m` : `${(metres / 1000).toFixed(metres < 10000 ? 2 : 1)} km`;

@@ -12,6 +12,7 @@ mod cells;
 mod columns;
 mod error;
 mod formats;
+mod json;
 mod matching;
 mod places;
 mod read;

@@ -39,14 +39,14 @@ pub(super) enum Pace {
 impl App {
     pub(super) fn new(options: ServerOptions, served: ServedState) -> Self {
         let limits = options.limits;
-        let (quick, slow) = (limits.quick, limits.slow);
+        let (quick, slow, changes) = (limits.quick, limits.slow, limits.changes);
         Self {
             served: RwLock::new(Arc::new(served)),
             reading: Mutex::new(()),
             cache: Cache::new(limits.cache_bytes),
             quick: Lane::new(quick.at_a_time, quick.waiting, quick.time),
             slow: Lane::new(slow.at_a_time, slow.waiting, slow.time),
-            changes: Lane::new(1, limits.changes.waiting, limits.changes.time),
+            changes: Lane::new(changes.at_a_time, changes.waiting, changes.time),
             options,
         }
     }
@@ -124,10 +124,7 @@ impl App {
         work: impl FnOnce(&ServerOptions, &DecodedRequest) -> Result<StoredAnswer, Problem> + Send + 'static,
     ) -> Response {
         let (app, asked) = (Arc::clone(self), ask.clone());
-        match self.changes.run(move |_| work(&app.options, &asked)).await {
-            Ok(stored) => stored.respond(&ask, Keep::Ask),
-            Err(problem) => problem.into_response(),
-        }
+        uncached(&ask, self.changes.run(move |_| work(&app.options, &asked)).await)
     }
 
     /// Answers a request with a body, which no cache keeps.
@@ -145,10 +142,7 @@ impl App {
             asked.stop = stop;
             work(&served, &asked)
         });
-        match answer.await {
-            Ok(stored) => stored.respond(&ask, Keep::Ask),
-            Err(problem) => problem.into_response(),
-        }
+        uncached(&ask, answer.await)
     }
 
     async fn try_answer(
@@ -182,4 +176,9 @@ impl App {
             .await?;
         Ok((stored, keep))
     }
+}
+
+/// The response with an answer that no cache keeps.
+fn uncached(ask: &DecodedRequest, made: Result<StoredAnswer, Problem>) -> Response {
+    made.map_or_else(Problem::into_response, |stored| stored.respond(ask, Keep::Ask))
 }

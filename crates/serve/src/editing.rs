@@ -18,25 +18,19 @@ pub(super) const MOST_BODY: usize = 1 << 20;
 /// The types of a body. A form of another site can have none of them.
 const TYPES: [&str; 2] = ["application/geo+json", "application/json"];
 
-/// Whether a request asks for a change, or sends what is to be supposed, and the server takes changes.
-pub(super) fn is_change(request: &Request, editing: &Editing) -> bool {
-    let rest = request.uri().path().strip_prefix(EVIDENCE);
-    let one = rest.and_then(|rest| rest.strip_prefix('/'));
-    let change = match *request.method() {
-        Method::POST => rest == Some("") || request.uri().path().starts_with(SUPPOSE),
-        Method::DELETE => one.is_some(),
-        _ => false,
-    };
-    change && *editing != Editing::Off
-}
-
-/// The methods of an address.
-pub(super) fn methods(path: &str, editing: &Editing) -> &'static str {
+/// The methods of an address: those that read, and where changes are taken the one that sends something.
+pub(super) fn methods(path: &str, editing: &Editing) -> &'static [Method] {
+    const READ: [Method; 2] = [Method::GET, Method::HEAD];
+    const ADD: [Method; 3] = [Method::GET, Method::HEAD, Method::POST];
+    const REMOVE: [Method; 3] = [Method::GET, Method::HEAD, Method::DELETE];
+    if *editing == Editing::Off {
+        return &READ;
+    }
     match path.strip_prefix(EVIDENCE) {
-        None if path.starts_with(SUPPOSE) && *editing != Editing::Off => "GET, HEAD, POST",
-        Some("") if *editing != Editing::Off => "GET, HEAD, POST",
-        Some(one) if one.starts_with('/') && *editing != Editing::Off => "GET, HEAD, DELETE",
-        _ => "GET, HEAD",
+        Some("") => &ADD,
+        Some(one) if one.starts_with('/') => &REMOVE,
+        None if path.starts_with(SUPPOSE) => &ADD,
+        _ => &READ,
     }
 }
 

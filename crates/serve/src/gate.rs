@@ -34,8 +34,8 @@ pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Ne
     let not_allowed = response.status() == StatusCode::METHOD_NOT_ALLOWED;
     let headers = response.headers_mut();
     if not_allowed {
-        let methods = editing::methods(target.path(), &app.options.editing);
-        headers.insert(header::ALLOW, HeaderValue::from_static(methods));
+        let methods = listed(editing::methods(target.path(), &app.options.editing));
+        headers.extend(HeaderValue::from_str(&methods).map(|methods| (header::ALLOW, methods)));
     }
     for (name, value) in FIXED_HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
@@ -65,9 +65,10 @@ fn content_security_policy(options: &ServerOptions) -> String {
 }
 
 fn refusal(request: &Request, options: &ServerOptions) -> Option<Problem> {
-    let change = editing::is_change(request, &options.editing);
-    if !change && ![Method::GET, Method::HEAD].contains(request.method()) {
-        let detail = format!("methods here are {}", editing::methods(request.uri().path(), &options.editing));
+    let methods = editing::methods(request.uri().path(), &options.editing);
+    let change = ![Method::GET, Method::HEAD].contains(request.method());
+    if !methods.contains(request.method()) {
+        let detail = format!("methods here are {}", listed(methods));
         return Some(Problem::new(StatusCode::METHOD_NOT_ALLOWED, "method", "The method is not allowed", detail));
     }
     let target = request.uri().path_and_query().map_or(0, |target| target.as_str().len());
@@ -93,6 +94,11 @@ fn refusal(request: &Request, options: &ServerOptions) -> Option<Problem> {
         return Some(Problem::new(StatusCode::MISDIRECTED_REQUEST, "host", "Not for this server", detail));
     }
     if change { editing::refusal(request, host, &options.editing) } else { None }
+}
+
+/// Methods as `Allow` lists them.
+fn listed(methods: &[Method]) -> String {
+    methods.iter().map(Method::as_str).collect::<Vec<_>>().join(", ")
 }
 
 /// Whether a `Host` is a loopback name or the server's own address, with any port.

@@ -13,6 +13,7 @@
 //! | `run` | listening, connections, stopping |
 //! | `routes` | the endpoint of every address |
 //! | `gate` | checks of every request, security headers of every response |
+//! | `ids` | ids of edges as text |
 //! | `editing` | who may change measurements |
 //! | `lines` | log lines for the operator of the server |
 //! | `ask` | names and parameters of a request |
@@ -31,7 +32,7 @@
 //!
 //! No module uses one above it. From below:
 //!
-//! 1. `options`, `editing`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
+//! 1. `options`, `editing`, `ids`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
 //! 2. `roads`, `search` and `region` read one file.
 //! 3. `older`, `changes`, `planning`, `drive` and `tiles` make results from regions. Each defines how many of its results are kept.
 //! 4. `api` answers from the values that an endpoint needs. `state` puts these values together.
@@ -61,6 +62,7 @@ mod changes;
 mod drive;
 mod editing;
 mod gate;
+mod ids;
 mod lines;
 mod memo;
 mod older;

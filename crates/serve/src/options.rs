@@ -126,7 +126,7 @@ pub struct Limits {
     pub quick: LaneLimits,
     /// Bounds of work that certifies (explanations, routes) or reads the whole database.
     pub slow: LaneLimits,
-    /// Bounds of changes of the database. One is made at a time, whatever is set here.
+    /// Bounds of changes of the database, which takes one at a time.
     pub changes: LaneLimits,
     /// Size of the cache of finished answers, bytes.
     pub cache_bytes: usize,

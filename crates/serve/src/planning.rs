@@ -6,6 +6,7 @@
 use std::sync::{Arc, mpsc};
 
 use super::drive::{self, Detail};
+use super::ids::ids_as_text;
 use super::memo::Recent;
 use super::problem::Problem;
 use super::region::{CertifiedVehicle, RegionState};
@@ -215,26 +216,5 @@ impl PlannerThread {
             csv: route::sheet_csv(network, conditional),
             geojson: route::sheet_geojson(network, vehicle, conditional),
         }
-    }
-}
-
-/// Replaces the ids of edges by text, because they have 63 bits and JavaScript's numbers hold 53.
-fn ids_as_text(value: &mut Value) {
-    match value {
-        Value::Array(all) => all.iter_mut().for_each(ids_as_text),
-        Value::Object(members) => {
-            for (name, member) in members {
-                match member {
-                    Value::Number(id) if matches!(name.as_str(), "edge_id" | "from_edge" | "to_edge") => {
-                        *member = json!(id.to_string());
-                    }
-                    Value::Array(all) if name == "edge_ids" => {
-                        all.iter_mut().for_each(|id| *id = json!(id.to_string()));
-                    }
-                    other => ids_as_text(other),
-                }
-            }
-        }
-        _ => {}
     }
 }

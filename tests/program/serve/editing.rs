@@ -130,7 +130,7 @@ fn the_kerb_of_a_turn_has_the_place_that_its_explanation_names() {
     is_described(&server, &answer, "/api/evidence", "post");
     assert_eq!(answer["junctions"], 1, "{answer:#}");
     let [measured] = answer["added"].as_array().unwrap().as_slice() else { panic!("{answer:#}") };
-    assert_eq!((&measured["used"], &measured["matched"][0]["from_edge"]), (&json!("counts"), &explained["from_edge"]));
+    assert_eq!((&measured["used"], &measured["matched"][0]["edges"][0]), (&json!("counts"), &explained["from_edge"]));
     let explained = server.json(&explain);
     assert_eq!(explained["measurements"][0]["value"], 12.5);
     assert_eq!(explained["suppose"]["now"], 12.5);

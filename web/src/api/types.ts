@@ -193,7 +193,7 @@ export interface Explanation {
   turn?: string;
   turn_id?: string;
   /** Of a turn: the node at which it leaves its first road, and both roads. */
-  junction?: string | null;
+  junction?: number | null;
   from_edge?: string | null;
   to_edge?: string | null;
   /** The measurements that count here. */

@@ -2,6 +2,7 @@
 
 import { api } from "../api/client.ts";
 import type { Policy, Position } from "../api/types.ts";
+import { DEGREE_M } from "../coordinate.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import type { View } from "../map/view.ts";
 import { h } from "../ui/dom.ts";
@@ -12,7 +13,6 @@ import { VERDICTS, policyWords, regionName, verdictWords } from "../words.ts";
 const KEY = "netcert.welcomed";
 /** An example is about so long, metres, or as long as the region allows. */
 const USUAL_M = 5000;
-const DEGREE_M = 111_320;
 /** Pairs of places that are tried. Each costs a search and a certificate. */
 const MOST_TRIES = 9;
 /** Shares of that length, because in towns a long way is certified more rarely. */

@@ -182,7 +182,7 @@ function tell(answer: EvidenceChange, told: HTMLElement, keeping: Keeping): void
 }
 
 /** What became of the verdicts of a vehicle. */
-export function changes(answer: Pick<EvidenceChange, "sets">, vehicle: string): string {
+function changes(answer: Pick<EvidenceChange, "sets">, vehicle: string): string {
   const own = answer.sets.filter((set) => set.vehicle === vehicle);
   const sum = (of: "became_safe" | "no_longer_safe") => own.reduce((all, { edges, turns }) => all + edges[of] + (turns?.[of] ?? 0), 0);
   const words = (many: number, what: string) => (many === 0 ? [] : [`${many} ${many === 1 ? "road or turn" : "roads and turns"} ${many === 1 ? "is" : "are"} ${what}`]);

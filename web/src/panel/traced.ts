@@ -2,17 +2,16 @@
 
 import type { Tracing } from "../trace/trace.ts";
 import type { Position } from "../api/types.ts";
+import { DEGREE_M } from "../coordinate.ts";
 import { h } from "../ui/dom.ts";
-import { spoken } from "../units.ts";
+import { square } from "../units.ts";
 
 /** Begins to trace on the map; `done` gets the closed ring. */
 export type Trace = (done: (ring: Position[]) => void) => Promise<Tracing>;
 
-const FOOT_M = 0.3048;
-const DEGREE_M = 111_320;
 
 /** The area inside of a small ring, square metres. */
-export function area(ring: readonly Position[]): number {
+function area(ring: readonly Position[]): number {
   const shrink = Math.cos(((ring[0]?.[1] ?? 0) * Math.PI) / 180);
   const at = ring.map(([lon, lat]): Position => [(lon - ring[0]![0]) * shrink * DEGREE_M, (lat - ring[0]![1]) * DEGREE_M]);
   const twice = at.slice(1).reduce((sum, [x, y], i) => sum + at[i]![0] * y - x * at[i]![1], 0);
@@ -38,9 +37,8 @@ export function tracer(trace: Trace, closed: (ring: Position[], told: HTMLElemen
     button.textContent = "Trace it anew";
     tracing = await trace((made) => {
       ring = made;
-      const square = spoken() === "feet" ? `${Math.round(area(made) / FOOT_M ** 2)} square feet` : `${Math.round(area(made))} m²`;
       const told = h("span", {});
-      said.replaceChildren(`Traced: ${made.length - 1} corners, ${square}. `, told);
+      said.replaceChildren(`Traced: ${made.length - 1} corners, ${square(area(made))}. `, told);
       closed(made, told);
     });
     if (signal.aborted) end();

@@ -1,4 +1,4 @@
-// Traces an area on the map, corner by corner. A bundle of its own, loaded when somebody traces: it is a sixth of the page.
+// Traces an area on the map, corner by corner. A bundle of its own, loaded when somebody traces: it is a twelfth of the page.
 
 import { TerraDraw, TerraDrawPolygonMode } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
@@ -14,7 +14,7 @@ export interface Tracing {
 /** Digits after the point of degrees: those of OpenStreetMap, a centimetre. */
 const PRECISION = 7;
 
-/** Begins to trace. `done` gets the closed ring when the first corner is chosen again, or Enter is pressed. */
+/** Begins to trace. `done` gets the closed ring when the first or the last corner is clicked again, or Enter is pressed. */
 export function trace(map: Map, colour: string, done: (ring: Position[]) => void): Tracing {
   const draw = new TerraDraw({
     // Layers whose names begin so survive a change of the style.

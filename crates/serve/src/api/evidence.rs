@@ -4,15 +4,15 @@ use serde_json::{Value, json};
 
 use super::super::answer::StoredAnswer;
 use super::super::ask::DecodedRequest;
+use super::super::ids::ids_as_text;
 use super::super::options::ServerOptions;
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::answered;
-use crate::osm::{LonLat, rounded};
 use crate::reporter::Silent;
 use crate::store::Database;
 use crate::words::Named as _;
-use netcert_evidence::{self as evidence, Along, Entry, EvidenceError, MeasurementRow, MeasurementTarget, Usage};
+use netcert_evidence::{self as evidence, Entry, EvidenceError, MeasurementRow};
 use netcert_pipeline::{self as pipeline, EvidenceChange, EvidenceChanged, RunError, SetChanged, VerdictChanges, What};
 
 /// What stands for the name of a file in the register and in what is said.
@@ -117,46 +117,9 @@ fn of_set(set: &SetChanged) -> Value {
     })
 }
 
-/// A measurement. Ids are text, as everywhere in this interface.
+/// A measurement. Ids of edges are text, as everywhere in this interface.
 fn members(entry: &Entry) -> Value {
-    let row = &entry.row;
-    let (value, unit) = match &row.value {
-        evidence::Value::Metres(m) => (json!(m), Some("m")),
-        evidence::Value::Tonnes(t) => (json!(t), Some("t")),
-        evidence::Value::Vehicle(id) => (json!(id), None),
-        evidence::Value::Polygon(rings) => {
-            let positions = |ring: &Vec<LonLat>| ring.iter().map(|at| rounded(at.degrees().into())).collect::<Vec<_>>();
-            (json!(rings.iter().map(positions).collect::<Vec<_>>()), None)
-        }
-    };
-    let matched = entry.places.iter().map(|&(target, counts)| match target {
-        MeasurementTarget::Edge(id) => json!({"edge_id": id.to_string(), "counts": counts}),
-        MeasurementTarget::Corner { node, edges } => json!({
-            "junction": node.to_string(),
-            "from_edge": edges.map(|edges| edges[0].to_string()),
-            "to_edge": edges.map(|edges| edges[1].to_string()),
-            "counts": counts,
-        }),
-        MeasurementTarget::Area(node) => json!({"surface_of": node.to_string(), "counts": counts}),
-    });
-    json!({
-        "no": entry.no,
-        "file": entry.file,
-        "row": row.number,
-        "quantity": row.quantity.name(),
-        "value": value,
-        "unit": unit,
-        "sigma": row.sigma,
-        "counts": row.lower(),
-        "direction": (row.along != Along::Both).then(|| row.along.name()),
-        "source": row.source,
-        "date": row.date,
-        "licence": row.licence,
-        "name": row.name,
-        "note": row.note,
-        "state": entry.state.name(),
-        "used": entry.usage().map(Usage::name),
-        "why": entry.why,
-        "matched": matched.collect::<Vec<_>>(),
-    })
+    let mut members = entry.json();
+    ids_as_text(&mut members);
+    members
 }

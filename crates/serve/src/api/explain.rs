@@ -14,7 +14,7 @@ use super::super::roads::RoadIndex;
 use super::{GEOJSON, SVG, answered, id, relative, suppose};
 use crate::explain::{self, Explanation, MapError};
 use crate::network::{EdgeNo, Network};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, NodeId};
 use crate::picture;
 use crate::rows::{Measurement, SetKey};
 use crate::settings::Settings;
@@ -185,9 +185,9 @@ fn of_turn(
     Ok(Explained { members, picture: picture::turn(&turn), map })
 }
 
-/// The node at which a turn leaves its first road. It is text, as all ids are here.
-fn via_node(roads: &RoadIndex, facts: &TurnFacts) -> Option<String> {
-    roads.network().edges.get(facts.movement.from.index()).map(|edge| edge.to_node.to_string())
+/// The node at which a turn leaves its first road.
+fn via_node(roads: &RoadIndex, facts: &TurnFacts) -> Option<NodeId> {
+    roads.network().edges.get(facts.movement.from.index()).map(|edge| edge.to_node)
 }
 
 fn unmapped(error: MapError) -> Problem {

@@ -40,23 +40,11 @@ const SCOPE: &str = "A supposition is no certificate: the numbers hold only if t
 /// `/api/suppose/{id}?metres=`
 pub(in super::super) fn suppose(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&["vehicle", "policy", "metres"])?;
-    let id = id(ask.name("id")?)?;
-    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
-    let certified = region.certified(ask.required("vehicle")?, policy)?;
     ask.required("metres")?;
-    let roads = region.roads()?;
-    let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
-    let case = Case { region, roads: &roads, certified: &certified, model: &model, stop: &ask.stop };
-    let mut members = match roads.edge(id) {
-        Some(edge) => case.edge(edge, metres(ask, MOST_WIDTH_M)?)?,
-        None => case.turn(id, metres(ask, MOST_KERB_M)?)?,
-    };
-    members["vehicle"] = json!(certified.vehicle.id);
-    members["policy"] = json!(policy.name());
-    members["unit"] = json!("m");
-    members["safe"] = json!(false);
-    members["scope"] = json!(SCOPE);
-    Ok(answered(&members))
+    of_case(region, ask, |case, id| match case.roads.edge(id) {
+        Some(edge) => case.edge(edge, metres(ask, MOST_WIDTH_M)?),
+        None => case.turn(id, metres(ask, MOST_KERB_M)?),
+    })
 }
 
 /// `POST /api/suppose/{id}`: the turn with the surface of the body, which is not kept.
@@ -66,20 +54,27 @@ pub(in super::super) fn suppose_surface(
     body: &[u8],
 ) -> Result<StoredAnswer, Problem> {
     ask.only(&["vehicle", "policy"])?;
+    let rows = super::evidence::rows_of(body)?;
+    if rows.iter().any(|row| row.quantity != Quantity::Surface) {
+        let detail = "only surfaces can be supposed so; `metres` supposes a width or a radius";
+        return Err(Problem::faulty(detail, Vec::new()));
+    }
+    of_case(region, ask, |case, id| case.surface(id, rows))
+}
+
+/// The answer about the edge or turn, the vehicle and the policy of a request.
+fn of_case(
+    region: &RegionState,
+    ask: &DecodedRequest,
+    made: impl FnOnce(&Case<'_>, i64) -> Result<Value, Problem>,
+) -> Result<StoredAnswer, Problem> {
     let id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
-    let rows = super::evidence::rows_of(body)?;
-    if rows.iter().any(|row| row.quantity != Quantity::Surface) {
-        return Err(Problem::faulty(
-            "only surfaces can be supposed so; `metres` supposes a width or a radius",
-            Vec::new(),
-        ));
-    }
     let roads = region.roads()?;
     let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let case = Case { region, roads: &roads, certified: &certified, model: &model, stop: &ask.stop };
-    let mut members = case.surface(id, rows)?;
+    let mut members = made(&case, id)?;
     members["vehicle"] = json!(certified.vehicle.id);
     members["policy"] = json!(policy.name());
     members["unit"] = json!("m");
