@@ -11,13 +11,17 @@ use jiff::civil::DateTime;
 use crate::certificate::Origin;
 use crate::explain::{self, Explanation, TurnExplanation};
 use crate::osm::facts::Policy;
-use crate::route::{Driver, Measure, NoDriver, Peer, Planner, Roads, Speeds, SpeedsError};
+use crate::route::{
+    Driver, Ladder, Measure, NoDriver, Peer, Planner, Roads, RungPrices, RungPricesError, Speeds, SpeedsError,
+    UnlikeSets,
+};
 use crate::rows::TurnRow;
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
 use crate::store::{CertifiedSet, Database, QueryOptions, Rows, Run, StoreError, TurnQuery};
 use crate::turns::turn_facts;
 use crate::vehicle::{Vehicle, VehicleError};
+use crate::words::Named as _;
 
 /// A region: its roads and the certificates of its vehicles.
 ///
@@ -109,6 +113,12 @@ pub enum RegionError {
     /// The table of speeds cannot be used.
     #[error(transparent)]
     Speeds(#[from] SpeedsError),
+    /// The table of prices cannot be used.
+    #[error(transparent)]
+    RungPrices(#[from] RungPricesError),
+    /// The vehicle's sets of certificates were made with different settings.
+    #[error(transparent)]
+    UnlikeSets(#[from] UnlikeSets),
     /// There is no such edge or turn.
     #[error("{}: no edge or turn {id}; `netcert query` lists their ids", path.display())]
     NoSuchId {
@@ -212,6 +222,32 @@ impl Region {
         Ok(Planner::new(&self.roads()?, driver, Speeds::builtin()?, measure))
     }
 
+    /// A planner whose routes use each road and turn on the narrowest strip that is certified, from that of `policy` up to that of `top`.
+    /// Policies between them for which the vehicle is not certified are left out.
+    ///
+    /// # Errors
+    /// The vehicle's edges or turns are not certified under `policy` or `top`, or with different settings; the file cannot be read.
+    pub fn climbing_planner(
+        &mut self,
+        vehicle: &str,
+        policy: Policy,
+        top: Policy,
+        measure: Measure,
+    ) -> Result<Planner, RegionError> {
+        let mut drivers = vec![self.driver(vehicle, policy)?];
+        for &between in Policy::ALL.iter().filter(|between| **between > policy && **between < top) {
+            if self.database.has_turns(vehicle, between)? {
+                drivers.push(self.driver(vehicle, between)?);
+            }
+        }
+        if top > policy {
+            drivers.push(self.driver(vehicle, top)?);
+        }
+        let roads = self.roads()?;
+        let ladder = Ladder::new(&drivers, &roads.movements)?;
+        Ok(Planner::climbing(&roads, &ladder, &Speeds::builtin()?, measure, &RungPrices::builtin()?))
+    }
+
     /// A vehicle with its permits on [`Self::roads`].
     ///
     /// # Errors
@@ -295,6 +331,7 @@ impl Region {
             measurements,
             settings,
             at: at.map(|time| time.to_string()),
+            uses: Vec::new(),
         })
     }
 

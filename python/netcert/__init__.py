@@ -48,7 +48,7 @@ from .errors import (
     VehicleError,
 )
 from .region import CertifiedSet, Region, open  # noqa: A004
-from .routes import Condition, Obstacle, Part, Route, Routes
+from .routes import Condition, Obstacle, Part, Route, Routes, StripUse
 from .table import Table
 
 __all__ = [
@@ -70,6 +70,7 @@ __all__ = [
     "Report",
     "Route",
     "Routes",
+    "StripUse",
     "Table",
     "Tube",
     "Unit",

@@ -319,6 +319,7 @@ class RegionFile:
         alternatives: int,
         tries: int,
         conditions: bool,
+        at_most: str | None,
     ) -> Answer: ...
     def verify(
         self,

@@ -142,6 +142,7 @@ class Region:
         alternatives: int = 0,
         tries: int = 30,
         conditions: bool = True,
+        at_most: Corridor | None = None,
     ) -> Routes:
         """Routes with one certificate over the whole way each, or what blocks them.
 
@@ -150,6 +151,7 @@ class Region:
         alternatives     number of routes beside the best one
         tries            number of whole routes that may fail to certify
         conditions       whether to look for a route that holds under conditions, if none is certified; that takes longer
+        at_most          the widest strip that a route may use where `corridor` is not enough; each route's `uses` says where
 
         The first question loads the network. Later ones for the same vehicle are faster, because corridors are kept.
 
@@ -157,7 +159,7 @@ class Region:
         """
         places = [start, *via, end]
         return Routes(
-            self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions)
+            self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions, at_most)
         )
 
     def verify(

@@ -35,6 +35,28 @@ class Part:
 
 
 @dataclass(frozen=True)
+class StripUse:
+    """A stretch on which a route may use more of the road than its own lane."""
+
+    what: str
+    """In words, such as "the oncoming lane"."""
+    strip: str
+    """"direction": another lane of its direction. "carriageway": beyond all of these."""
+    where: str
+    """"road": as certified. "turn": near a turn, where the whole strip of the turn counts."""
+    from_m: float
+    """Beginning, metres from the route's beginning."""
+    to_m: float
+    """End, metres from the route's beginning."""
+    beyond_m: float
+    """How far any point of the vehicle may stand beyond the narrower strip, metres. An upper bound."""
+    side: str
+    """"left" or "right"."""
+    title: str
+    """Names of the roads."""
+
+
+@dataclass(frozen=True)
 class Obstacle:
     """A place that a route would need, and that is not safe."""
 
@@ -117,6 +139,17 @@ class Route:
         return [
             Part(**_members(part, Part, ("edge_id", "from_edge", "to_edge"))) for part in self._members["parts"]
         ]
+
+    @property
+    def rung(self) -> str:
+        """The widest strip that the route uses anywhere: "lane", "direction" or "carriageway"."""
+        return self._members["rung"]
+
+    @cached_property
+    def uses(self) -> list[StripUse]:
+        """Where the route may use more of the road than its own lane, in driving order."""
+        names = ("what", "strip", "where", "from_m", "to_m", "beyond_m", "side", "title")
+        return [StripUse(**{name: one[name] for name in names}) for one in self._members["uses"]]
 
     @cached_property
     def conditions(self) -> list[Condition]:

@@ -66,8 +66,10 @@ impl Answer {
         let route = numbered.route;
         let given = FileCorridor { corridor: route.path.corridor.clone(), frame: Some(route.path.frame) };
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+        let uses = library::use_members(&self.roads.network, route);
+        let origin = Origin { uses, ..self.origin.clone() };
         let text = work::run(py, |_| {
-            certificate::text_under(conditions, &self.origin, &given, model, &route.certificate, options)
+            certificate::text_under(conditions, &origin, &given, model, &route.certificate, options)
         })?;
         text.map_err(|e| error::NetcertError::new_err(e.to_string()))
     }

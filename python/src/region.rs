@@ -41,6 +41,8 @@ pub(crate) struct RegionFile {
 struct PlannerKey {
     vehicle_id: String,
     policy: Policy,
+    /// The widest strip that its routes may use.
+    top: Policy,
     measure: Measure,
 }
 
@@ -172,8 +174,13 @@ impl RegionFile {
         alternatives: usize,
         tries: usize,
         conditions: bool,
+        at_most: Option<&str>,
     ) -> PyResult<Answer> {
         let policy = self.policy(py, corridor)?;
+        let top = at_most.map(|word| named::<Policy>("at_most", word)).transpose()?.unwrap_or(policy);
+        if at_most.is_some() && top <= policy {
+            return Err(PyValueError::new_err("at_most: expected a policy that is wider than `corridor`"));
+        }
         let measure = match least {
             "time" => Measure::Time,
             "distance" => Measure::Distance,
@@ -185,10 +192,14 @@ impl RegionFile {
         let places = places.into_iter().map(|(lon, lat)| position(lon, lat)).collect::<PyResult<Vec<_>>>()?;
         let question = Question { places, snap_m, alternatives, tries };
         work::run(py, |stop| {
-            let key = PlannerKey { vehicle_id: vehicle_id.to_owned(), policy, measure };
+            let key = PlannerKey { vehicle_id: vehicle_id.to_owned(), policy, top, measure };
             let mut planners = self.planners.lock().unwrap_or_else(PoisonError::into_inner);
             let mut planner = match planners.remove(&key) {
                 Some(planner) => planner,
+                None if top > policy => self
+                    .region()
+                    .climbing_planner(vehicle_id, policy, top, measure)
+                    .map_err(|e| error::of_region(&e))?,
                 None => self.region().planner(vehicle_id, policy, measure).map_err(|e| error::of_region(&e))?,
             };
             let answer =

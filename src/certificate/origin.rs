@@ -22,6 +22,8 @@ pub struct Origin {
     pub settings: Value,
     /// The time of the journey, local time. `None`: of all times together.
     pub at: Option<String>,
+    /// Where the route uses more of the road than its own lane ([`crate::route::use_members`]).
+    pub uses: Vec<Value>,
 }
 
 impl Origin {
@@ -36,6 +38,7 @@ impl Origin {
             "measurements": self.measurements,
             "settings": self.settings,
             "at": self.at,
+            "uses": self.uses,
         })
     }
 }

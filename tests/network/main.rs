@@ -27,6 +27,7 @@ mod restrictions;
 mod roundabouts;
 mod route_junctions;
 mod routes;
+mod rungs;
 mod tapers;
 mod titles;
 mod turns;

@@ -333,6 +333,22 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
     assert_eq!(opened, there);
 }
 
+#[test]
+fn a_place_with_longitude_and_latitude_exchanged_is_told_so() {
+    let map = AsciiMap::drawn(100.0, "A B").way("AB", "highway=residential");
+    let roads = Roads::new(built(&map).0);
+    let snapper = Snapper::new(&roads);
+    let (lon, lat) = roads.network.positions(&roads.network.edges[0]).next().unwrap().degrees();
+    let snap = |lon, lat| snapper.snap(Position { lon, lat }, 50.0, |_| true);
+    assert!(snap(lon, lat).is_ok());
+    let error = snap(lat, lon).unwrap_err();
+    assert!(matches!(error, SnapError::Exchanged { distance_m, .. } if distance_m < 1.0), "{error:?}");
+    assert!(error.to_string().contains("give the longitude first, then the latitude"), "{error}");
+    // A kilometre away, or where the other way round there is nothing either.
+    assert!(matches!(snap(lon, lat + 0.01).unwrap_err(), SnapError::TooFar { .. }));
+    assert!(matches!(snap(lat + 10.0, lon).unwrap_err(), SnapError::Nothing { .. }));
+}
+
 /// Answers for random pairs of places on certified roads.
 fn answers(region: &TestRegion, driver: &routing::TestDriver, pairs: u64) -> Vec<Answer> {
     let mut planner = region.planner(driver, Measure::Time);

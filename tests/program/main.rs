@@ -33,6 +33,7 @@ mod patience;
 mod relative;
 mod resume;
 mod route_cli;
+mod rungs;
 mod serve;
 mod settings;
 mod sign;

@@ -30,6 +30,7 @@ export function write(state: State, first: State): string {
   if (state.evidence !== "assumed") parts.set("width", state.evidence);
   put("id", state.selected);
   if (state.route) parts.set("route", state.route.map((place) => (place ? position(place) : "")).join(";"));
+  put("most", state.atMost);
   if (state.stats) parts.set("stats", "1");
   if (state.changes) parts.set("changes", "1");
   put("units", state.units);
@@ -54,6 +55,7 @@ export function read(hash: string, first: State, possible: Possible): State {
     evidence: known<Evidence>(EVIDENCE, get("width")) ?? "assumed",
     selected: /^[0-9]{1,20}$/.test(get("id")) ? get("id") : null,
     route: places(parts.get("route")),
+    atMost: known(possible.policies, get("most")),
     stats: get("stats") === "1",
     changes: possible.changes && get("changes") === "1",
     camera: readCamera(get("at")),

@@ -40,6 +40,8 @@ export interface State {
   selected: string | null;
   /** The places of a route, at least two; null if no route is asked for. */
   route: Places | null;
+  /** The widest strip that a route may use where that of the policy is not enough; null: none. */
+  atMost: Policy | null;
   stats: boolean;
   /** Whether the changes since the older database are drawn over a muted map. */
   changes: boolean;
@@ -61,6 +63,7 @@ export function beginning(vehicle: string, policy: Policy): State {
     camera: null,
     selected: null,
     route: null,
+    atMost: null,
     stats: false,
     changes: false,
     baseMap: false,

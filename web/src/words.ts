@@ -33,8 +33,9 @@ export const verdictWords: Record<VerdictName, { name: string; meaning: string }
 export const SHARED_LANE = "Certified on the whole road: oncoming traffic waits";
 
 /** What the line of a route stands for, by its kind. */
-export const routeWords: Record<"certified" | "conditional" | "blocked", string> = {
+export const routeWords: Record<"certified" | "oncoming" | "conditional" | "blocked", string> = {
   certified: "Certified as a whole",
+  oncoming: "Certified, with the oncoming lane",
   conditional: "Only under conditions: not certified",
   blocked: "Blocked: what stands in its way",
 };

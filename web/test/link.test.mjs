@@ -23,6 +23,7 @@ test("everything in a link comes back", () => {
     camera: { zoom: 12.5, lat: -36.75, lon: 144.25 },
     selected: "8103123456789012345",
     route: [[144.1, -36.7], [144.2, -36.8]],
+    atMost: "carriageway",
     stats: true,
     changes: true,
     units: "feet",

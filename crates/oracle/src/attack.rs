@@ -11,7 +11,7 @@ use netcert_base::vehicle::Vehicle;
 use crate::adversary::{AdversaryBounds, PushTarget, hinge_kernel, kernel};
 use crate::claim::{BodyPoint, Claim};
 use crate::draw::Draw;
-use crate::path::{Path, along, direction, dot, left_of, wrapped};
+use crate::path::{Path, V2, along, direction, dot, left_of, wrapped};
 use crate::road::PreparedCorridor;
 use crate::simulator::{Disturbance, Near, PerUnit, SearchGrid, SimulatedDrive, SimulatedRun, places, sweep};
 
@@ -301,6 +301,22 @@ impl<'a> Attack<'a> {
                 }
             }
         }
+    }
+
+    /// Places along both sides of all bodies on a drive under unmatched disturbances, from the corridor's beginning to its end.
+    pub fn driven(&self, draw: &mut Draw) -> Vec<V2> {
+        let run = self.drive.whole(&self.noise(draw));
+        let mut out = Vec::new();
+        for step in self.on_road().filter(|step| step % 4 == 0) {
+            let (guide, headings) = run.at(step);
+            for (i, unit) in self.drive.vehicle.units.iter().enumerate() {
+                for ahead_m in places(self.drive.vehicle, i, 1.0) {
+                    let side = |aside_m: f64| self.drive.body_point(guide, headings, i, ahead_m, aside_m);
+                    out.extend([side(0.5 * unit.width_m), side(-0.5 * unit.width_m)]);
+                }
+            }
+        }
+        out
     }
 
     /// Unmatched disturbances: constant, waves, or random bang-bang.

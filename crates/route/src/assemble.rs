@@ -14,6 +14,7 @@ use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{EdgeNo, Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
+use crate::osm::facts::Policy;
 use crate::stop::{Stop, Stopped};
 use crate::turns::{Joint, LengthClass, Opening, StrokeLine, cut_out_of_route};
 use crate::verdict::UnknownReason;
@@ -161,6 +162,7 @@ pub fn assemble(
             approach: piece.approach,
             departure: piece.departure,
             reach: piece.reach,
+            strip: piece.strip,
         });
     }
     legs.push(first..edges.len());
@@ -199,6 +201,7 @@ struct Between {
     approach: Joint,
     departure: Joint,
     reach: LengthClass,
+    strip: Policy,
 }
 
 fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<BlendPoint>, FrameError> {
@@ -300,10 +303,11 @@ impl Leg {
         let (low, high) = (from.min(to), from.max(to).min(last_station));
         let mut samples = samples(corridor, low..high + 1, line.made.frame, frame)?;
         // As in the turns' own certificates, their strip counts before and after them.
-        let strip = strokes.turn_params().strip.max(strokes.settings().policy);
+        let level = strokes.turn_params().strip.max(strokes.settings().policy);
         let metres = |stations: usize| stations as f64 * corridor.spacing_m;
         for (station, sample) in (low..).zip(&mut samples) {
             let opening = |turn: Option<&Between>, of: &dyn Fn(LengthClass) -> Opening| {
+                let strip = turn.map_or(level, |turn| turn.strip);
                 line.half_widths(strip, station, turn.map_or(Opening::NONE, |turn| of(turn.reach)))
             };
             let after_turn = opening(before, &|reach| reach.opening_after(metres(station.saturating_sub(from))));

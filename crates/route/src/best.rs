@@ -6,7 +6,7 @@ use crate::stop::Stop;
 
 impl Planner {
     /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
-    /// longer. A place that is near no safe road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks
+    /// longer. A planner that climbs looks for conditions on the widest strip alone. A place that is near no safe road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks
     /// the way.
     ///
     /// # Errors
@@ -17,6 +17,16 @@ impl Planner {
         stop: &Stop,
         searching: impl FnOnce(),
     ) -> Result<Answer, Unanswered> {
+        if self.widest.is_some() {
+            let climbed = match self.certified_routes(question, stop) {
+                Err(Unanswered::Place(_)) => Answer::default(),
+                answer => answer?,
+            };
+            return match climbed.routes.is_empty() {
+                true => self.on_the_widest(climbed, |widest| widest.best_answer(question, stop, searching)),
+                false => Ok(climbed),
+            };
+        }
         let certified = match self.answer(question, stop) {
             Err(Unanswered::Place(error)) => Err(error),
             answer => Ok(answer?),

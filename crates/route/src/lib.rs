@@ -19,6 +19,9 @@
 //! | `assemble`, `blend`, `grounds` | one corridor from pieces, with the areas of their turns |
 //! | `whole` | the certificate of a whole way, and where it fails |
 //! | `route` | a certified route, and its parts |
+//! | `rungs` | the strip on which each edge and turn is used |
+//! | `rung_prices` | what it costs a route to use more than its own lane |
+//! | `strip_use` | where a certified route uses more than its own lane, and how far |
 //! | `title` | titles and places of edges, turns and passages |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route, and on which way |
@@ -64,9 +67,12 @@ mod relative;
 mod report;
 mod roads;
 mod route;
+mod rung_prices;
+mod rungs;
 mod search;
 mod snap;
 mod speeds;
+mod strip_use;
 mod survey;
 mod through;
 mod title;
@@ -88,12 +94,15 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnEnds, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Unanswered};
 pub use reach::{Components, ReachableEdges, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
-pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members};
+pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members, use_members};
 pub use roads::Roads;
 pub use route::{LimitedStretch, PartResult, Route};
+pub use rung_prices::{RungPrices, RungPricesError};
+pub use rungs::{Ladder, Rungs, UnlikeSets};
 pub use search::{FoundWay, Goal, SearchExtent, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper, foot};
 pub use speeds::{Measure, Speeds, SpeedsError};
+pub use strip_use::{StripUse, UsePlace};
 pub use survey::{
     Opens, Pairs, PlacePair, SURVEY_COLUMNS, SURVEY_SCOPE, Survey, SurveyLine, SurveyStep, survey_pairs, survey_region,
 };

@@ -1,6 +1,7 @@
 //! The edges and movements that a vehicle may use, with verdict and RSC. A search starts from them.
 
 use super::graph::{Access, BARRED};
+use super::rungs::Rungs;
 use crate::network::{EdgeNo, MovementKind, Movements, Network};
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
@@ -46,6 +47,8 @@ pub struct Permits {
     pub movements: Vec<Permit>,
     /// One permit for each passage, in the order of [`Movements::passages`].
     pub passages: Vec<Permit>,
+    /// The strip that belongs to each permit.
+    pub rungs: Rungs,
 }
 
 impl Permits {
@@ -62,7 +65,8 @@ impl Permits {
             MovementKind::UTurn => Permit::UNKNOWN,
         };
         let passages = movements.passages().iter().map(|passage| turn(passage.from, passage.to)).collect();
-        Self { settings, edges, movements: movements.all().iter().map(permit).collect(), passages }
+        let rungs = Rungs::level(settings.policy);
+        Self { settings, edges, movements: movements.all().iter().map(permit).collect(), passages, rungs }
     }
 
     /// Tells of edges and passages that lack room what the rules of the road say besides, which a database keeps for safe ones only. What a rule

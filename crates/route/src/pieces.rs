@@ -6,8 +6,10 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::roads::Roads;
+use super::rungs::Rungs;
 use crate::corridor::{AreaSpan, Corridor, Frame};
-use crate::network::{EdgeNo, Movement, Network};
+use crate::network::{Edge, EdgeNo, Movement, Network};
+use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::turns::{Joint, LengthClass, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
@@ -31,6 +33,8 @@ pub struct TurnPiece {
     pub area: Option<AreaSpan>,
     /// How far before and after it the turn's strip counts.
     pub reach: LengthClass,
+    /// The turn's strip.
+    pub strip: Policy,
 }
 
 /// A source of turns.
@@ -114,7 +118,7 @@ pub struct TurnEnds {
 }
 
 impl TurnEnds {
-    fn of(movement: &Movement) -> Self {
+    pub(super) fn of(movement: &Movement) -> Self {
         Self { from: movement.from, to: movement.to }
     }
 }
@@ -256,15 +260,22 @@ pub struct Strokes {
     roads: Arc<Roads>,
     settings: Settings,
     params: TurnParams,
+    rungs: Rungs,
     /// By edge: its stroke, and its index in the stroke.
     place: Vec<(u32, u32)>,
     made: FxHashMap<u32, Result<Arc<StrokeLine>, UnknownReason>>,
 }
 
 impl Strokes {
-    /// The strokes of these roads. No corridor is made yet.
+    /// The strokes of these roads, with the strip of the settings everywhere. No corridor is made yet.
     #[must_use]
     pub fn new(roads: &Arc<Roads>, settings: Settings) -> Self {
+        let rungs = Rungs::level(settings.policy);
+        Self::on_rungs(roads, settings, rungs)
+    }
+
+    /// The strokes of these roads, each edge with its own strip. No corridor is made yet.
+    pub(super) fn on_rungs(roads: &Arc<Roads>, settings: Settings, rungs: Rungs) -> Self {
         let network = &roads.network;
         let mut place = vec![(u32::MAX, 0); network.edges.len()];
         for (stroke, facts) in (0_u32..).zip(&network.strokes) {
@@ -274,7 +285,32 @@ impl Strokes {
             }
         }
         let params = settings.turn_params();
-        Self { roads: Arc::clone(roads), settings, params, place, made: FxHashMap::default() }
+        Self { roads: Arc::clone(roads), settings, params, rungs, place, made: FxHashMap::default() }
+    }
+
+    /// The strips of edges and turns.
+    pub(super) fn rungs(&self) -> &Rungs {
+        &self.rungs
+    }
+
+    /// The strip of a turn, as far as the settings let turns use more than roads.
+    pub(super) fn turn_strip(&self, turn: TurnEnds) -> Policy {
+        self.params.strip.max(self.rungs.turn(turn))
+    }
+
+    /// Changes strips. The lines of the strokes that `edges` belong to are made again.
+    pub(super) fn change_rungs(&mut self, edges: &[EdgeNo], change: impl FnOnce(&mut Rungs)) {
+        change(&mut self.rungs);
+        // An edge also lies in the approach of other strokes.
+        let network = &self.roads.network;
+        let on = |range: &Range<u32>| {
+            let all = network.stroke_edges.get(range.start as usize..range.end as usize);
+            all.is_some_and(|all| all.iter().any(|edge| edges.contains(edge)))
+        };
+        self.made.retain(|&stroke, _| {
+            let facts = network.strokes.get(stroke as usize);
+            !facts.is_some_and(|facts| on(&facts.edges) || on(&facts.approach))
+        });
     }
 
     pub(super) fn network(&self) -> &Network {
@@ -314,8 +350,26 @@ impl Strokes {
     /// The stroke has no corridor; the error is the reason.
     pub fn line(&mut self, stroke: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (network, policy, params) = (&self.roads.network, self.settings.policy, &self.settings.corridor);
-        let make = || StrokeLine::new(network, stroke, policy, params).map(Arc::new);
+        let raised = self.raised_on(stroke);
+        let sections = |edge: &Edge| {
+            let section = network.section(edge);
+            raised.get(&edge.id).map_or(section, |&strip| section.opened_to(strip))
+        };
+        let make = || StrokeLine::on(network, stroke, &sections, policy, params).map(Arc::new);
         self.made.entry(stroke).or_insert_with(make).clone()
+    }
+
+    /// By id, the strips of a stroke's edges that are wider than the policy's, those of its approach included.
+    fn raised_on(&self, stroke: u32) -> FxHashMap<i64, Policy> {
+        let network = &self.roads.network;
+        let Some(facts) = network.strokes.get(stroke as usize).filter(|_| !self.rungs.is_level()) else {
+            return FxHashMap::default();
+        };
+        let ranges = [&facts.approach, &facts.edges];
+        let edges =
+            ranges.into_iter().filter_map(|range| network.stroke_edges.get(range.start as usize..range.end as usize));
+        let strip = |&edge: &EdgeNo| Some((network.edges.get(edge.index())?.id, self.rungs.edge(edge)));
+        edges.flatten().filter_map(strip).filter(|(_, strip)| *strip > self.settings.policy).collect()
     }
 
     /// The line of the stroke that an edge belongs to.

@@ -16,6 +16,8 @@ use super::obstacles::{self, BlockedWay, Obstacle, Refutation};
 use super::pieces::Turns;
 use super::roads::Roads;
 use super::route::Route;
+use super::rung_prices::RungPrices;
+use super::rungs::Ladder;
 use super::search::{FoundWay, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
@@ -87,6 +89,8 @@ pub struct Planner {
     pub(super) fitter: Option<Box<Fitter>>,
     speeds: Speeds,
     access: Access,
+    /// A planner that climbs has one for the widest strip alone. It says what blocks, and looks for conditions.
+    pub(super) widest: Option<Box<Planner>>,
     pub(super) stop: Stop,
 }
 
@@ -99,6 +103,22 @@ impl Planner {
         Self::with_turns(roads, driver, speeds, measure, turns)
     }
 
+    /// A planner whose routes use each road and turn on the narrowest strip of a ladder on which the vehicle has a permit. Wider strips cost
+    /// what `prices` says. Where no route is certified, the planner says what blocks the widest strip.
+    #[must_use]
+    pub fn climbing(
+        roads: &Arc<Roads>,
+        ladder: &Ladder,
+        speeds: &Speeds,
+        measure: Measure,
+        prices: &RungPrices,
+    ) -> Self {
+        let mut planner = Self::new(roads, Arc::clone(&ladder.climbing), speeds.clone(), measure);
+        prices.add(&mut planner.access, &planner.graph, &planner.driver.permits.rungs, measure);
+        planner.widest = Some(Box::new(Self::new(roads, Arc::clone(&ladder.widest), speeds.clone(), measure)));
+        planner
+    }
+
     /// A planner with another source of turns.
     #[must_use]
     pub fn with_turns(
@@ -108,10 +128,12 @@ impl Planner {
         measure: Measure,
         turns: Box<dyn Turns>,
     ) -> Self {
+        let graph = Graph::new(roads, &speeds, measure).for_vehicle(&driver.model.vehicle);
         Self {
-            graph: Graph::new(roads, &speeds, measure).for_vehicle(&driver.model.vehicle),
             snapper: Snapper::new(roads),
             access: driver.permits.access(&roads.movements),
+            graph,
+            widest: None,
             whole: Whole::new(roads, Arc::clone(&driver), turns),
             fitter: None,
             driver,
@@ -144,19 +166,46 @@ impl Planner {
     /// # Errors
     /// A place is near no road that the vehicle may use, or `stop` was told.
     pub fn answer(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
+        let mut answer = self.certified_routes(question, stop)?;
+        if answer.routes.is_empty() && self.widest.is_some() {
+            return self.on_the_widest(answer, |widest| widest.answer(question, stop));
+        }
+        if answer.routes.is_empty() {
+            (answer.obstacles, answer.blocked) = self.obstacles(&answer)?.unzip();
+        }
+        Ok(answer)
+    }
+
+    /// The certified routes alone.
+    ///
+    /// # Errors
+    /// As [`Self::answer`].
+    pub(super) fn certified_routes(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
         self.stop = stop.clone();
         stop.check()?;
         let usable = |edge| self.driver.permits.edge(edge);
         let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
+        self.whole.begin_rungs();
         let mut access = self.access.clone();
         self.next_route(&mut access, question, &mut answer, &|_| true)?;
-        if answer.routes.is_empty() {
-            (answer.obstacles, answer.blocked) = self.obstacles(&answer)?.unzip();
-        } else {
+        if !answer.routes.is_empty() {
             self.alternatives(&access, question, &mut answer)?;
         }
+        Ok(answer)
+    }
+
+    /// What a planner that found no route by climbing answers: the answer on the widest strip, with the routes that failed before.
+    pub(super) fn on_the_widest(
+        &mut self,
+        climbed: Answer,
+        ask: impl FnOnce(&mut Self) -> Result<Answer, Unanswered>,
+    ) -> Result<Answer, Unanswered> {
+        let Some(widest) = &mut self.widest else { return Ok(climbed) };
+        let mut answer = ask(widest)?;
+        let of_widest = std::mem::replace(&mut answer.refuted, climbed.refuted);
+        answer.refuted.extend(of_widest);
         Ok(answer)
     }
 
@@ -227,11 +276,13 @@ impl Planner {
 
     /// The route on a way that was certified, from the share `start` of its first edge to the share `end` of its last.
     pub(super) fn route(&self, found: &FoundWay, start: f64, end: f64, certified: CertifiedWay) -> Route {
-        let CertifiedWay { path, certificate } = certified;
+        let CertifiedWay { path, certificate, uses } = certified;
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
         let (drive, cost, vehicle_length_m) = (found.drive.clone(), found.cost, self.driver.model.vehicle.length_m);
-        Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate }
+        // The price of climbing only chooses between ways.
+        let cost = if self.widest.is_some() { cost_of(&self.graph, &drive, start, end) } else { cost };
+        Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate, uses }
     }
 
     /// The driving time by the table of speeds, seconds.
@@ -322,17 +373,17 @@ impl Planner {
             if self.next_route(&mut access, question, answer, &wanted)?
                 && let Some(route) = answer.routes.last_mut()
             {
-                route.cost = costs_of(&self.graph, route);
+                route.cost = cost_of(&self.graph, &route.drive, route.start, route.end);
             }
         }
         Ok(())
     }
 }
 
-/// The cost of a route without the surcharges of the search for alternatives.
-fn costs_of(graph: &Graph, route: &Route) -> u64 {
-    let edges = shares(&route.drive, route.start, route.end).map(|(share, edge)| graph.part_cost(edge, share));
-    edges.sum::<u64>() + turns(graph, &route.drive) * graph.turn_cost()
+/// The cost of a way without the surcharges of a search.
+fn cost_of(graph: &Graph, drive: &Drive, start: f64, end: f64) -> u64 {
+    let edges = shares(drive, start, end).map(|(share, edge)| graph.part_cost(edge, share));
+    edges.sum::<u64>() + turns(graph, drive) * graph.turn_cost()
 }
 
 /// The driven share of each edge. The way begins at the share `start` of its first edge and ends at the share `end` of its last.

@@ -7,6 +7,7 @@ use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::Answer;
 use super::route::{LimitedStretch, PartResult, Route};
+use super::strip_use::StripUse;
 use super::title::{place, title};
 use crate::corridor::FrameError;
 use crate::network::{EdgeNo, Network, PassageKind};
@@ -53,7 +54,27 @@ fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
         "limiting_at": route.limiting().map(|at| title(network, at)),
         "destination_only": stretches(&route.destination_only(network, &model.vehicle)),
         "only_at_times": stretches(&route.only_at_times(network, &model.vehicle)),
+        "rung": route.rung().name(),
+        "uses": use_members(network, route),
     })
+}
+
+/// The members of a route's uses of more than its own lane. A distance is rounded up to centimetres.
+#[must_use]
+pub fn use_members(network: &Network, route: &Route) -> Vec<Value> {
+    let members = |used: &StripUse| {
+        let own = json!({
+            "what": used.words(network),
+            "strip": used.strip.name(),
+            "where": used.place.name(),
+            "from_m": used.from_m,
+            "to_m": used.to_m,
+            "beyond_m": (used.beyond_m * 100.0).ceil() / 100.0,
+            "side": used.side.name(),
+        });
+        with(ids(network, used.at), own)
+    };
+    route.uses.iter().map(members).collect()
 }
 
 fn stretches(all: &[LimitedStretch]) -> Vec<Value> {
@@ -171,7 +192,7 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
     })
 }
 
-/// A GeoJSON collection: each route as one line followed by its parts, and obstacles as points.
+/// A GeoJSON collection: each route as one line followed by its parts and by where it uses more than its own lane, and obstacles as points.
 ///
 /// # Errors
 /// Positions cannot be converted from a route's frame.
@@ -204,6 +225,12 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
             let end = part.stations.end.max(part.stations.start + 2).min(line.len());
             let start = part.stations.start.min(end.saturating_sub(2));
             features.push(feature(start..end, members(network, &result)));
+        }
+        for (used, members) in route.uses.iter().zip(use_members(network, route)) {
+            let station = |m: f64| ((m / c.spacing_m).round() as usize).min(line.len().saturating_sub(1));
+            let end = (station(used.to_m) + 1).max(2);
+            let stations = station(used.from_m).min(end - 2)..end;
+            features.push(feature(stations, with(json!({"feature": "use"}), members)));
         }
     }
     for condition in answer.conditional.iter().flat_map(|conditional| condition_members(network, conditional)) {

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::assemble::{PartKind, RoutePart, RoutePath};
 use super::drive::Drive;
+use super::strip_use::StripUse;
 use crate::network::{Edge, Network, destination_tag};
-use crate::osm::facts::At;
+use crate::osm::facts::{At, Policy};
 use crate::stet::{Certificate, known_m};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
@@ -31,6 +32,8 @@ pub struct Route {
     pub path: RoutePath,
     /// The certificate of the whole corridor. It is safe.
     pub certificate: Certificate,
+    /// Where the vehicle may use more of the road than its own lane, in driving order.
+    pub uses: Vec<StripUse>,
 }
 
 /// A stretch of a route with its least leeway.
@@ -61,6 +64,12 @@ pub struct LimitedStretch {
 }
 
 impl Route {
+    /// The widest strip that the vehicle may use anywhere on the route.
+    #[must_use]
+    pub fn rung(&self) -> Policy {
+        self.uses.iter().map(|used| used.strip).max().unwrap_or(Policy::Lane)
+    }
+
     /// The parts in driving order.
     #[must_use]
     pub fn parts(&self) -> Vec<PartResult> {

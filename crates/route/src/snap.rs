@@ -17,6 +17,9 @@ use crate::osm::facts::Direction;
 /// The greatest distance at which a road is searched, to report the distance of the nearest one, metres.
 const FARTHEST_M: f64 = 200_000.0;
 
+/// A place nearer than this to a road was not given with longitude and latitude exchanged, metres.
+const EXCHANGED_M: f64 = 10_000.0;
+
 /// A place on the earth, degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
@@ -64,6 +67,19 @@ pub enum SnapError {
         distance_m: f64,
         /// The allowed distance, metres.
         most_m: f64,
+    },
+    /// No road is near, and one is near the place with longitude and latitude exchanged.
+    #[error(
+        "{lon:.5},{lat:.5}: no road that may be used is near, but one is at {lat:.5},{lon:.5}; give the longitude first, then the latitude",
+        lon = place.lon, lat = place.lat
+    )]
+    Exchanged {
+        /// The requested place.
+        place: Position,
+        /// The point on the road near the exchanged place.
+        nearest: Position,
+        /// Its distance from the exchanged place, metres.
+        distance_m: f64,
     },
     /// There is no road within 200 km.
     #[error("{lon:.5},{lat:.5}: no road that may be used within 200 km", lon = place.lon, lat = place.lat)]
@@ -123,13 +139,23 @@ impl Snapper {
                     return Ok(snapped);
                 }
                 let (nearest, distance_m) = (snapped.position, snapped.distance_m);
-                return Err(SnapError::TooFar { place, nearest, distance_m, most_m });
+                let too_far = SnapError::TooFar { place, nearest, distance_m, most_m };
+                let exchanged = (distance_m > EXCHANGED_M).then(|| self.exchanged(place, most_m, &usable));
+                return Err(exchanged.flatten().unwrap_or(too_far));
             }
             if reach_m >= FARTHEST_M {
-                return Err(SnapError::Nothing { place });
+                let nothing = SnapError::Nothing { place };
+                return Err(self.exchanged(place, most_m, &usable).unwrap_or(nothing));
             }
             reach_m *= 4.0;
         }
+    }
+
+    /// What to say of a place whose longitude and latitude were exchanged: no road is near it, and one is near the other place.
+    fn exchanged(&self, place: Position, most_m: f64, usable: &impl Fn(EdgeNo) -> bool) -> Option<SnapError> {
+        let other = Position { lon: place.lat, lat: place.lon };
+        let near = (other.lat.abs() <= 90.0).then(|| self.nearest_within(other, most_m.max(50.0), usable))??;
+        Some(SnapError::Exchanged { place, nearest: near.position, distance_m: near.distance_m })
     }
 
     fn nearest_within(&self, place: Position, reach_m: f64, usable: &impl Fn(EdgeNo) -> bool) -> Option<Snapped> {

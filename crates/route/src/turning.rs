@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::driver::Driver;
-use super::pieces::{Strokes, TurnPiece, Turns};
+use super::pieces::{Strokes, TurnEnds, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::{EdgeNo, Movement};
+use crate::osm::facts::Policy;
 use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{LengthClass, TurnCorridors, TurnEdges, TurnPath, TurnPlanner, turn_on};
 use crate::verdict::UnknownReason;
@@ -40,7 +41,7 @@ impl Turns for MadeTurns {
         movement: &Movement,
         arcs: &[EdgeNo],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
-        let made = self.made(strokes, movement, arcs)?;
+        let (made, strip) = (self.made(strokes, movement, arcs)?, strokes.turn_strip(TurnEnds::of(movement)));
         let options = &strokes.settings().stet;
         let known = self.best(&made, options);
         let code = known.as_ref().map(|(path, _)| path.code);
@@ -53,7 +54,7 @@ impl Turns for MadeTurns {
         let mut others: Vec<(TurnPath, SpanResult)> = others.collect();
         let order = |result: &SpanResult| (result.safe(), result.rsc_m);
         others.sort_by(|a, b| order(&b.1).partial_cmp(&order(&a.1)).unwrap_or(std::cmp::Ordering::Equal));
-        known.into_iter().chain(others).map(|(path, _)| self.piece(&made, path)).collect()
+        known.into_iter().chain(others).map(|(path, _)| self.piece(&made, path, strip)).collect()
     }
 
     fn first(
@@ -62,9 +63,9 @@ impl Turns for MadeTurns {
         movement: &Movement,
         arcs: &[EdgeNo],
     ) -> Result<Option<TurnPiece>, UnknownReason> {
-        let made = self.made(strokes, movement, arcs)?;
+        let (made, strip) = (self.made(strokes, movement, arcs)?, strokes.turn_strip(TurnEnds::of(movement)));
         match self.best(&made, &strokes.settings().stet) {
-            Some((path, _)) => self.piece(&made, path).map(Some),
+            Some((path, _)) => self.piece(&made, path, strip).map(Some),
             // Another path may count although the best one of the search does not.
             None => Ok(self.pieces(strokes, movement, arcs)?.into_iter().next()),
         }
@@ -77,9 +78,9 @@ impl Turns for MadeTurns {
         arcs: &[EdgeNo],
         code: i64,
     ) -> Result<Option<TurnPiece>, UnknownReason> {
-        let made = self.made(strokes, movement, arcs)?;
+        let (made, strip) = (self.made(strokes, movement, arcs)?, strokes.turn_strip(TurnEnds::of(movement)));
         let counts = |path: &TurnPath| self.unsafe_too || self.certified(path, &strokes.settings().stet).is_some();
-        made.path(code).filter(counts).map(|path| self.piece(&made, path)).transpose()
+        made.path(code).filter(counts).map(|path| self.piece(&made, path, strip)).transpose()
     }
 }
 
@@ -98,18 +99,18 @@ impl MadeTurns {
             let found = lines.iter().find(|(of, _)| *of == edge);
             found.map(|(_, line)| line.as_ref()).ok_or(UnknownReason::Geometry)
         };
-        let (network, policy, params) = (strokes.network(), strokes.settings().policy, strokes.turn_params());
-        turn_on(network, TurnEdges { movement: *movement, through: arcs }, &line, policy, params, reach)
+        let (network, policy) = (strokes.network(), strokes.rungs().turn(TurnEnds::of(movement)));
+        turn_on(network, TurnEdges { movement: *movement, through: arcs }, &line, policy, strokes.turn_params(), reach)
     }
 
     fn best(&self, made: &TurnCorridors, options: &Options) -> Option<(TurnPath, SpanResult)> {
         best_of(made, &[&self.driver.model], options).pop().flatten().filter(|(_, result)| self.counts(result))
     }
 
-    fn piece(&self, made: &TurnCorridors, path: TurnPath) -> Result<TurnPiece, UnknownReason> {
+    fn piece(&self, made: &TurnCorridors, path: TurnPath, strip: Policy) -> Result<TurnPiece, UnknownReason> {
         let TurnPath { code, corridor, area, turn, approach, departure, .. } = path;
         let reach = LengthClass::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
-        Ok(TurnPiece { code, frame: made.frame, corridor, turn, approach, departure, area, reach })
+        Ok(TurnPiece { code, frame: made.frame, corridor, turn, approach, departure, area, reach, strip })
     }
 
     fn counts(&self, result: &SpanResult) -> bool {

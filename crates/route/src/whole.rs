@@ -10,6 +10,7 @@ use super::driver::Driver;
 use super::obstacles::Refutation;
 use super::pieces::{Choices, Menu, Strokes, TurnEnds, Turns};
 use super::roads::Roads;
+use super::strip_use::StripUse;
 use crate::corridor::Corridor;
 use crate::network::{EdgeNo, offset_m};
 use crate::osm::LonLat;
@@ -23,6 +24,8 @@ const TURN_REACH_M: f64 = 120.0;
 const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
+/// How often places of one way are raised by a rung.
+const MOST_RAISED: usize = 40;
 
 /// Certifies ways of one vehicle. It keeps the strokes and turns that it has made.
 pub(super) struct Whole {
@@ -30,6 +33,8 @@ pub(super) struct Whole {
     driver: Arc<Driver>,
     strokes: Strokes,
     menu: Menu,
+    /// Edges that stand, or whose turns stand, higher than their permits say.
+    raised: FxHashSet<EdgeNo>,
 }
 
 /// A way that passed as a whole.
@@ -38,6 +43,8 @@ pub(super) struct CertifiedWay {
     pub(super) path: RoutePath,
     /// Its certificate, which is safe.
     pub(super) certificate: Certificate,
+    /// Where it uses more than its own lane.
+    pub(super) uses: Vec<StripUse>,
 }
 
 /// A way whose pieces could be joined, with the result for each of its parts.
@@ -56,8 +63,48 @@ impl Looked {
 impl Whole {
     /// Nothing is made yet. Strokes and turns have the settings of the driver's permits.
     pub(super) fn new(roads: &Arc<Roads>, driver: Arc<Driver>, turns: Box<dyn Turns>) -> Self {
-        let strokes = Strokes::new(roads, driver.permits.settings.clone());
-        Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns) }
+        let permits = &driver.permits;
+        let strokes = Strokes::on_rungs(roads, permits.settings.clone(), permits.rungs.clone());
+        Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns), raised: FxHashSet::default() }
+    }
+
+    /// Every place stands on the rung of its permit again. What answers depend on must not depend on earlier questions.
+    pub(super) fn begin_rungs(&mut self) {
+        if self.raised.is_empty() {
+            return;
+        }
+        let edges: Vec<EdgeNo> = self.raised.drain().collect();
+        let rungs = self.driver.permits.rungs.clone();
+        self.strokes.change_rungs(&edges, |of| *of = rungs);
+        self.forget_beside(&edges);
+    }
+
+    /// Raises a place of a way and the road beside it by one rung. Returns whether anything stands higher now.
+    fn raise(&mut self, drive: &Drive, at: PartKind) -> bool {
+        let mut rungs = self.strokes.rungs().clone();
+        let network = &self.roads.network;
+        let length_m = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
+        let raised = rungs.raise(drive, at, &length_m);
+        if raised.is_empty() {
+            return false;
+        }
+        let turns = raised.turns.iter().flat_map(|turn| [turn.from, turn.to]);
+        let edges: Vec<EdgeNo> = raised.edges.iter().copied().chain(turns).collect();
+        self.strokes.change_rungs(&edges, |of| *of = rungs);
+        self.forget_beside(&edges);
+        self.raised.extend(edges);
+        true
+    }
+
+    /// Forgets the turns near edges whose strips have changed.
+    fn forget_beside(&mut self, edges: &[EdgeNo]) {
+        let network = &self.roads.network;
+        let line = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.positions(edge));
+        let changed: Vec<LonLat> = edges.iter().copied().filter_map(line).flatten().collect();
+        self.menu.forget(|from, to| {
+            let ends = [line(from).and_then(|mut line| line.next_back()), line(to).and_then(|mut line| line.next())];
+            ends.into_iter().flatten().any(|end| changed.iter().any(|&at| near(at, end)))
+        });
     }
 
     /// Lets go of the roads, so that their network can be changed. [`Self::go_on_with`] must follow.
@@ -75,10 +122,6 @@ impl Whole {
         let line = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.positions(edge));
         let along = edges.iter().copied().filter_map(line).flatten();
         let changed: Vec<LonLat> = along.chain(nodes.iter().copied()).collect();
-        let near = |a: LonLat, b: LonLat| {
-            let [east_m, north_m] = offset_m(a, b);
-            east_m.hypot(north_m) < BESIDE_M
-        };
         self.menu.forget(|from, to| {
             let ends = [line(from).and_then(|mut line| line.next_back()), line(to).and_then(|mut line| line.next())];
             ends.into_iter().flatten().any(|end| changed.iter().any(|&at| near(at, end)))
@@ -97,11 +140,17 @@ impl Whole {
     ) -> Result<(Option<CertifiedWay>, Vec<Refutation>), Stopped> {
         self.menu.begin();
         let mut failed: Vec<Refutation> = Vec::new();
+        let mut raised = 0;
         for strung in 1.. {
             let refutation = match self.certify(way, stop)? {
                 Ok(certified) => return Ok((Some(certified), failed)),
                 Err(refutation) => refutation,
             };
+            // What holds on one strip everywhere need not hold where strips change.
+            if raised < MOST_RAISED && self.raise(way.drive, refutation.at) {
+                raised += 1;
+                continue;
+            }
             let another = match (&refutation.assembly, refutation.at) {
                 // All pairs of paths of the two turns were tried.
                 (Some(AssemblyError::Overlap { .. }), _) => false,
@@ -150,7 +199,7 @@ impl Whole {
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
         let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
         let safe = certified.filter(|(certificate, _)| certificate.result.safe());
-        Ok(safe.map(|(certificate, _)| CertifiedWay { path, certificate }))
+        Ok(safe.map(|(certificate, _)| self.certified(path, certificate)))
     }
 
     /// Chooses the next path of a turn of a way. Returns whether there is one.
@@ -210,8 +259,19 @@ impl Whole {
         if !certificate.result.safe() {
             return Ok(Err(refuted(Some(&certificate))));
         }
-        Ok(Ok(CertifiedWay { path, certificate }))
+        Ok(Ok(self.certified(path, certificate)))
     }
+
+    fn certified(&mut self, path: RoutePath, certificate: Certificate) -> CertifiedWay {
+        let uses = StripUse::all(&mut self.strokes, &path, &certificate, &self.driver.model.vehicle);
+        CertifiedWay { path, certificate, uses }
+    }
+}
+
+/// Whether a turn at one place sees what changes at the other.
+fn near(a: LonLat, b: LonLat) -> bool {
+    let [east_m, north_m] = offset_m(a, b);
+    east_m.hypot(north_m) < BESIDE_M
 }
 
 /// The stations of a path's parts.

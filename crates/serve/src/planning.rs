@@ -12,7 +12,8 @@ use super::problem::Problem;
 use super::region::{CertifiedVehicle, RegionState};
 use crate::picture::{self, SheetStyle, Units};
 use crate::route::{
-    self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, SnapError, Speeds, Unanswered,
+    self, Conditional, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError, Speeds,
+    Unanswered,
 };
 use crate::stop::Stop;
 use crate::words::{Named as _, verdict_words};
@@ -87,26 +88,45 @@ impl Default for Planners {
 struct PlannerThread {
     roads: Arc<Roads>,
     driver: Arc<Driver>,
+    /// With it the routes may climb, and the driver is that of the ladder.
+    ladder: Option<Ladder>,
+    prices: RungPrices,
     measure: Measure,
     speeds: Speeds,
 }
 
 impl Router {
-    /// Reads the permits of the vehicle and starts the planner's thread.
+    /// Reads the permits of the vehicle and starts the planner's thread. If there are several sets of the vehicle, its routes climb from the
+    /// first one's strip to wider ones.
     pub(super) fn start(
         region: &RegionState,
-        certified: &CertifiedVehicle<'_>,
+        sets: &[CertifiedVehicle<'_>],
         measure: Measure,
     ) -> Result<Self, Problem> {
+        let fault = |error: &dyn std::fmt::Display| Problem::fault(error.to_string());
         let roads = Arc::clone(&region.roads()?.roads);
-        let driver =
-            region.read(|database| match Driver::stored(database, &roads, certified.vehicle, certified.set) {
-                Err(NoDriver::Store(error)) => Err(error),
-                driver => Ok(driver),
-            })?;
-        let driver = driver.map_err(|error| Problem::fault(error.to_string()))?;
-        let speeds = Speeds::builtin().map_err(|error| Problem::fault(error.to_string()))?;
-        let planner = PlannerThread { roads, driver, measure, speeds };
+        let mut drivers = Vec::with_capacity(sets.len());
+        for certified in sets {
+            let driver =
+                region.read(|database| match Driver::stored(database, &roads, certified.vehicle, certified.set) {
+                    Err(NoDriver::Store(error)) => Err(error),
+                    driver => Ok(driver),
+                })?;
+            drivers.push(driver.map_err(|error| fault(&error))?);
+        }
+        let ladder = match drivers.len() {
+            0 | 1 => None,
+            _ => Some(
+                Ladder::new(&drivers, &roads.movements)
+                    .map_err(|error| Problem::parameter("at_most", error.to_string()))?,
+            ),
+        };
+        let climbing = ladder.as_ref().map(|ladder| Arc::clone(&ladder.climbing));
+        let driver = climbing.or_else(|| drivers.into_iter().next());
+        let driver = driver.ok_or_else(|| Problem::fault("a route needs a set of certificates".to_owned()))?;
+        let speeds = Speeds::builtin().map_err(|error| fault(&error))?;
+        let prices = RungPrices::builtin().map_err(|error| fault(&error))?;
+        let planner = PlannerThread { roads, driver, ladder, prices, measure, speeds };
         let (questions, asked) = mpsc::sync_channel(MOST_WAITING);
         let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || planner.serve(&asked));
         thread.map_err(|error| Problem::busy(format!("no thread for routes: {error}")))?;
@@ -124,12 +144,19 @@ impl Router {
 impl PlannerThread {
     fn serve(&self, asked: &mpsc::Receiver<(RouteQuestion, Reply)>) {
         loop {
-            let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure);
+            let mut planner = self.planner();
             for _ in 0..ANSWERS {
                 let Ok((ride, reply)) = asked.recv() else { return };
                 // Sending fails if the request has gone, which is no error.
                 let _ = reply.send(self.answer(&mut planner, &ride));
             }
+        }
+    }
+
+    fn planner(&self) -> Planner {
+        match &self.ladder {
+            Some(ladder) => Planner::climbing(&self.roads, ladder, &self.speeds, self.measure, &self.prices),
+            None => Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure),
         }
     }
 
@@ -163,6 +190,7 @@ impl PlannerThread {
         let line = answer.blocked.as_ref().map(|way| way.line(network)).filter(|line| line.len() > 1);
         members["blocked_way"] = json!(line.map(|line| json!({"type": "LineString", "coordinates": line})));
         members["policy"] = json!(self.driver.permits.settings.policy.name());
+        members["at_most"] = json!(self.ladder.as_ref().map(|ladder| ladder.widest.permits.settings.policy.name()));
         ids_as_text(&mut members);
         let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
         Ok(PlannedAnswer { members, sheets })
@@ -172,7 +200,7 @@ impl PlannerThread {
     fn no_road(&self, planner: &Planner, ride: &RouteQuestion, error: &SnapError) -> Problem {
         let (place, nearest) = match *error {
             SnapError::TooFar { place, nearest, distance_m, .. } => (place, Some((nearest, distance_m))),
-            SnapError::Nothing { place } => (place, None),
+            SnapError::Nothing { place } | SnapError::Exchanged { place, .. } => (place, None),
             _ => return Problem::fault(error.to_string()),
         };
         let last = ride.question.places.len().saturating_sub(1);

@@ -67,6 +67,17 @@ pub(crate) fn certified(
     certified_like(session, path, database, required, None)
 }
 
+/// As [`certified`]. A new set has these settings.
+pub(crate) fn certified_with(
+    session: &Session,
+    path: &Path,
+    database: Database,
+    required: &RequiredSet<'_>,
+    settings: &Settings,
+) -> anyhow::Result<(Database, CertifiedSet)> {
+    certified_like(session, path, database, required, Some(settings))
+}
+
 /// Returns the database and `id` as a reference for the set of `required`. Certificates that the reference lacks are made with the
 /// settings of that set.
 pub(crate) fn reference(

@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use anyhow::bail;
 use clap::Args;
 use jiff::civil::DateTime;
 use netcert::certificate::Origin;
+use netcert::osm::facts::Policy;
 use netcert::region::Region;
-use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
+use netcert::route::{Driver, Graph, Ladder, Measure, Roads, Speeds};
 use netcert::settings::Settings;
 use netcert::store::Database;
+use netcert::words::Named;
 
 use crate::cli::Session;
 use crate::cli::arguments::relative::RelativeArgs;
@@ -27,7 +30,7 @@ pub(crate) struct RoutingArgs {
     #[command(flatten)]
     db: DatabaseArgs,
     #[command(flatten)]
-    vehicle: VehicleArgs,
+    pub(crate) vehicle: VehicleArgs,
     #[command(flatten)]
     policy: PolicyArgs,
     #[command(flatten)]
@@ -73,6 +76,40 @@ impl RoutingArgs {
 }
 
 impl RoutingInputs {
+    /// The vehicle with the permits of each policy from that of the inputs up to `top`. What the database lacks is certified first.
+    ///
+    /// # Errors
+    /// `top` is no wider than the policy of the inputs; the file cannot be read or written.
+    pub(crate) fn ladder(
+        &self,
+        session: &Session,
+        vehicle: &VehicleArgs,
+        top: Policy,
+        command: &'static str,
+    ) -> anyhow::Result<Ladder> {
+        let settings = self.settings();
+        if top <= settings.policy {
+            let (top, base) = (top.name(), settings.policy.name());
+            bail!(
+                "--at-most {top}: the certificates are of the {base} policy already; name a wider one, or run without --at-most"
+            );
+        }
+        let mut drivers = vec![Arc::clone(&self.driver)];
+        for &policy in Policy::ALL.iter().filter(|policy| **policy > settings.policy && **policy <= top) {
+            let required = vehicle.required(Some(policy), Coverage::EdgesAndTurns, command);
+            let like = Settings { policy, ..settings.clone() };
+            let database = Database::open(&self.path)?;
+            let (database, _) = on_demand::certified_with(session, &self.path, database, &required, &like)?;
+            database.close()?;
+            let mut region = Region::open(&self.path)?;
+            if let Some(time) = self.at {
+                region.set_time(time)?;
+            }
+            drivers.push(region.driver(&vehicle.id, policy)?);
+        }
+        Ok(Ladder::new(&drivers, &self.roads.movements)?)
+    }
+
     pub(crate) fn graph(&self, measure: Measure) -> Graph {
         Graph::new(&self.roads, &self.speeds, measure).for_vehicle(&self.driver.model.vehicle)
     }

@@ -64,6 +64,12 @@ export interface Question {
   policy: Policy;
 }
 
+/** The same for a route. */
+export interface RouteQuestion extends Question {
+  /** The widest strip that the route may use where that of the policy is not enough; null: none. */
+  atMost: Policy | null;
+}
+
 /** The greatest number of changes that the server gives at once. */
 export const MOST_CHANGES = 5000;
 
@@ -75,9 +81,9 @@ const MOST_OTHERS = 2;
 
 const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;
 const asked = ({ vehicle, policy }: Question): Record<string, string> => ({ vehicle, policy });
-function ride(places: readonly Position[], question: Question): Query {
+function ride(places: readonly Position[], question: RouteQuestion): Query {
   const all = places.map(place);
-  return { ...asked(question), from: all[0] ?? "", via: all.slice(1, -1), to: all.at(-1) ?? "", snap: String(SNAP_M) };
+  return { ...asked(question), ...(question.atMost ? { at_most: question.atMost } : {}), from: all[0] ?? "", via: all.slice(1, -1), to: all.at(-1) ?? "", snap: String(SNAP_M) };
 }
 
 interface Turn {
@@ -115,12 +121,12 @@ export const api = {
     return turns.find((turn) => turn.from_edge === from && turn.to_edge === to)?.turn_id ?? null;
   },
   /** `conditions` says whether to look for a route under conditions where none is certified. */
-  route: (places: readonly Position[], question: Question, conditions: "search" | "none", signal?: AbortSignal) =>
+  route: (places: readonly Position[], question: RouteQuestion, conditions: "search" | "none", signal?: AbortSignal) =>
     get<RouteAnswer>("/api/route", { ...ride(places, question), conditions }, signal),
   /** Routes that differ from the best one, after it. Each has its drive. */
-  otherRoutes: (places: readonly Position[], question: Question, signal?: AbortSignal) =>
+  otherRoutes: (places: readonly Position[], question: RouteQuestion, signal?: AbortSignal) =>
     get<RouteAnswer>("/api/route", { ...ride(places, question), conditions: "none", alternatives: String(MOST_OTHERS), drive: "all" }, signal),
-  sheetUrl: (form: "html" | "csv" | "geojson", places: readonly Position[], question: Question) =>
+  sheetUrl: (form: "html" | "csv" | "geojson", places: readonly Position[], question: RouteQuestion) =>
     `/api/sheet.${form}?${written({ ...ride(places, question), ...(form === "html" && spoken() === "feet" ? { units: "feet" } : {}) })}`,
   /** What changed since the older database, of the box `west,south,east,north` or everywhere. */
   changes: (question: Question, bbox: string | null, signal?: AbortSignal) =>

@@ -309,6 +309,22 @@ export interface RoutePart {
   rsc_m: number;
 }
 
+/** A stretch on which a route may use more of the road than its own lane. */
+export interface StripUse {
+  title: string;
+  /** In words, such as "the oncoming lane". */
+  what: string;
+  /** Another lane of its direction, or beyond all of these. */
+  strip: "direction" | "carriageway";
+  /** On a road, as certified; or near a turn, where the whole strip of the turn counts. */
+  where: "road" | "turn";
+  from_m: number;
+  to_m: number;
+  /** How far any point of the vehicle may stand beyond the narrower strip, metres. */
+  beyond_m: number;
+  side: "left" | "right";
+}
+
 export interface Drive {
   /** Stations of the moments, metres from the beginning. */
   s_m: number[];
@@ -351,6 +367,9 @@ export interface Route {
   limiting_unit_name: string | null;
   limiting_side: string;
   limiting_at: string | null;
+  /** The widest strip that the route uses anywhere. */
+  rung: Policy;
+  uses: StripUse[];
   parts: RoutePart[];
   geometry: { type: "LineString"; coordinates: Position[] };
   leeway: Leeway;

@@ -267,7 +267,7 @@ export class Page {
     this.#tools.draw();
     this.#welcome.draw();
     if (!first && (changed.has("selected") || changed.has("route"))) this.#welcome.end();
-    if (changed.has("route") || (certificates && state.route)) this.#routing.update();
+    if (changed.has("route") || ((certificates || changed.has("atMost")) && state.route)) this.#routing.update();
     const again = (certificates || respelt || changed.has("other")) && state.selected;
     if (changed.has("selected") || changed.has("route") || again) this.#select(first && !state.camera);
     if (changed.has("stats")) {

@@ -1,14 +1,15 @@
 // From two clicks to a route on the map, its panel, and the drive along it. Where no route is certified, the way that is blocked is shown
 // at once, and the route under conditions when it is found.
 
-import { SNAP_M, ServerProblem, api } from "../api/client.ts";
-import type { Position, RouteAnswer } from "../api/types.ts";
+import { SNAP_M, ServerProblem, api, type RouteQuestion } from "../api/client.ts";
+import type { Policy, Position, RouteAnswer } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { Ends } from "../map/ends.ts";
 import { palettes } from "../map/palette.ts";
 import { Pins, type Pin } from "../map/pins.ts";
 import { RouteLine } from "../map/routeline.ts";
 import type { View } from "../map/view.ts";
+import { stretch } from "../panel/along.ts";
 import { obstacleItems } from "../panel/blocked.ts";
 import { conditionItems } from "../panel/conditions.ts";
 import type { Item } from "../panel/numbered.ts";
@@ -47,7 +48,7 @@ export class Routing {
     this.#line = new RouteLine(view);
     this.#pins = new Pins(view, (number) => this.#choose(number));
     this.#ends = new Ends(view, (index, count) => [letter(index), `${letter(index)}: ${roleOf(index, count)}`], (index, place) => set(this.#places.map((one, other) => (other === index ? place : one))));
-    this.#trip = new Trip(set);
+    this.#trip = new Trip(set, (atMost) => context.store.set({ atMost }));
     this.drive = new Driving(context, view);
     this.#panel = new RoutePanel(
       {
@@ -65,6 +66,18 @@ export class Routing {
       },
       this.#trip.element,
     );
+  }
+
+  /** The strips of the database that are wider than the policy's, the narrowest first. */
+  get #wider(): Policy[] {
+    const { policy } = question(this.context);
+    const all: readonly Policy[] = ["lane", "direction", "carriageway"];
+    return all.slice(all.indexOf(policy) + 1).filter((one) => this.context.region.policies.includes(one));
+  }
+
+  get #question(): RouteQuestion {
+    const { atMost } = this.context.store.state;
+    return { ...question(this.context), atMost: atMost && this.#wider.includes(atMost) ? atMost : null };
   }
 
   get #places(): Position[] {
@@ -98,12 +111,13 @@ export class Routing {
     this.#shown = null;
     this.drive.offer(null);
     this.#ends.show(route ?? []);
-    this.#line.show("certified", [], [], this.context.theme.theme);
+    this.#line.show("certified", [], { others: [], oncoming: [] }, this.context.theme.theme);
     this.#pin("obstacle", []);
     document.body.classList.toggle("is-routing", route !== null && !all);
     document.body.classList.toggle("has-route", route !== null);
     if (route === null) return;
     this.#trip.show(route);
+    this.#trip.offer(this.#wider, this.#question.atMost);
     this.#panel.waiting(route);
     if (all) void this.#ask(all);
   }
@@ -125,7 +139,7 @@ export class Routing {
   async #ask(places: readonly Position[]): Promise<void> {
     const running = (this.#running = new AbortController());
     const { signal } = running;
-    const own = question(this.context);
+    const own = this.#question;
     let blocked: RouteAnswer | null = null;
     try {
       blocked = await this.#first(places, signal);
@@ -146,7 +160,7 @@ export class Routing {
   /** The answer without conditions. Null if a place is near no certified road: it may be near one that a condition opens. */
   async #first(places: readonly Position[], signal: AbortSignal): Promise<RouteAnswer | null> {
     try {
-      return await api.route(places, question(this.context), "none", signal);
+      return await api.route(places, this.#question, "none", signal);
     } catch (error) {
       if (error instanceof ServerProblem && error.problem.status === 422) return null;
       throw error;
@@ -172,7 +186,7 @@ export class Routing {
     if (!places) return;
     this.#redraw({ others: "waiting" });
     try {
-      const answer = await api.otherRoutes(places, question(this.context), signal);
+      const answer = await api.otherRoutes(places, this.#question, signal);
       this.#redraw({ answer, others: "asked" });
       byId("drawer").querySelector<HTMLElement>(".other-way")?.focus();
     } catch (error) {
@@ -194,7 +208,7 @@ export class Routing {
     this.#shown = { ...this.#shown, ...changed };
     const { answer, places, search, chosen, others } = this.#shown;
     const { theme } = this.context.theme;
-    const own = question(this.context);
+    const own = this.#question;
     const { conditional, routes, blocked_way: way } = answer;
     const best = routes[chosen];
     this.drive.offer(best ?? null);
@@ -203,16 +217,18 @@ export class Routing {
     this.#panel.show(answer, this.#items, { palette: palettes[theme], command: this.#command(places), sheet, search, chosen, others, about: this.#about(answer) });
     const line = (best?.geometry ?? conditional?.geometry ?? way)?.coordinates ?? [];
     const beside = routes.filter((one) => one !== best).map(({ geometry }) => geometry.coordinates);
-    this.#line.show(best ? "certified" : conditional ? "conditional" : "blocked", line, beside, theme);
+    const oncoming = (best?.uses ?? []).filter(({ strip }) => strip === "carriageway");
+    const dashed = best ? oncoming.map(({ from_m, to_m }) => stretch(best, from_m, to_m)) : [];
+    this.#line.show(best ? "certified" : conditional ? "conditional" : "blocked", line, { others: beside, oncoming: dashed }, theme);
     this.#pin(conditional ? "condition" : "obstacle", this.#items);
     return line;
   }
 
   #command(places: readonly Position[]): string {
-    const { vehicle, policy } = question(this.context);
+    const { vehicle, policy, atMost } = this.#question;
     const at = places.map((place) => place.map((degrees) => degrees.toFixed(6)).join(","));
     const via = at.slice(1, -1).map((one) => ` --via ${one}`).join("");
-    return `netcert route --vehicle ${vehicle} --corridor ${policy} --from ${at[0]}${via} --to ${at.at(-1)} --snap ${SNAP_M}`;
+    return `netcert route --vehicle ${vehicle} --corridor ${policy} --from ${at[0]}${via} --to ${at.at(-1)} --snap ${SNAP_M}${atMost ? ` --at-most ${atMost}` : ""}`;
   }
 
   #about({ scope }: RouteAnswer): About {

@@ -150,7 +150,7 @@ async function exampleTrip(context: Context, view: View, signal: AbortSignal): P
     return [from, all.reduce((best, one) => (off(one) < off(best) ? one : best))];
   });
   const turnsOf = async ({ places, policy }: Trip): Promise<number> => {
-    const answer = await api.route(places, { vehicle, policy }, "none", signal).catch((error: unknown) => {
+    const answer = await api.route(places, { vehicle, policy, atMost: null }, "none", signal).catch((error: unknown) => {
       if (signal.aborted) throw error;
       return null;
     });

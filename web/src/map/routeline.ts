@@ -9,6 +9,12 @@ import type { View } from "./view.ts";
 /** What a line stands for. */
 export type RouteKind = "certified" | "conditional" | "blocked";
 
+/** What is drawn with a line: other certified ways, and the stretches of the line itself on which the oncoming lane is used. */
+export interface Beside {
+  others: Position[][];
+  oncoming: Position[][];
+}
+
 export const ROUTE = "own-route";
 const nothing: GeoJSON.FeatureCollection = { type: "FeatureCollection", features: [] };
 
@@ -16,7 +22,7 @@ type Line = Extract<LayerSpecification, { type: "line" }>;
 
 /** The layers from below to above. */
 function layers(palette: Palette): Line[] {
-  const line = (name: string, kind: RouteKind | "other", paint: Line["paint"], cap: "round" | "butt" = "round"): Line => ({
+  const line = (name: string, kind: RouteKind | "other" | "oncoming", paint: Line["paint"], cap: "round" | "butt" = "round"): Line => ({
     id: `${ROUTE}-${name}`,
     type: "line",
     source: ROUTE,
@@ -34,6 +40,8 @@ function layers(palette: Palette): Line[] {
     line("edge", "certified", { ...fading, "line-color": palette.route, "line-width": 12 }),
     line("casing", "certified", { ...fading, "line-color": palette.routeCasing, "line-width": 10 }),
     line("line", "certified", { ...fading, "line-color": palette.route, "line-width": 5.5 }),
+    // Dashes inside the line: there the oncoming lane is used, too.
+    line("oncoming", "oncoming", { ...fading, "line-color": palette.routeCasing, "line-width": 2.4, "line-dasharray": [1.6, 1.2] }, "butt"),
     line("conditional-casing", "conditional", { ...kept, "line-color": palette.routeCasing, "line-width": 9 }),
     line("conditional-ground", "conditional", { ...kept, "line-color": palette.conditionalGap, "line-width": 6.5 }),
     line("conditional", "conditional", { ...kept, "line-color": palette.conditional, "line-width": 4.2, "line-dasharray": [2, 1] }, "butt"),
@@ -49,11 +57,11 @@ export class RouteLine {
   constructor(private readonly view: View) {}
 
   /** Draws another line; fewer than two positions remove it. */
-  show(kind: RouteKind, coordinates: Position[], others: Position[][], theme: Theme): void {
+  show(kind: RouteKind, coordinates: Position[], { others, oncoming }: Beside, theme: Theme): void {
     const feature = (own: string, line: Position[]): GeoJSON.Feature => ({ type: "Feature", properties: { kind: own }, geometry: { type: "LineString", coordinates: line } });
     this.#drawn = coordinates.length > 1;
     void this.view.ready.then(() => {
-      this.view.overlay(ROUTE, this.#drawn ? { ...nothing, features: [...others.map((line) => feature("other", line)), feature(kind, coordinates)] } : nothing);
+      this.view.overlay(ROUTE, this.#drawn ? { ...nothing, features: [...others.map((line) => feature("other", line)), feature(kind, coordinates), ...oncoming.map((line) => feature("oncoming", line))] } : nothing);
       this.#draw(theme);
     });
   }

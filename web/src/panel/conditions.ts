@@ -1,10 +1,11 @@
 // A route under conditions, in words that nobody can take for a certificate: what has to be so, and sheets to take along.
 
-import type { Condition, ConditionalRoute, Position, RoutePart } from "../api/types.ts";
+import type { Condition, ConditionalRoute, RoutePart } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { distance, length, spoken } from "../units.ts";
 import { careful, duration } from "../words.ts";
+import { along } from "./along.ts";
 import type { Item } from "./numbered.ts";
 
 const quantities: Record<Condition["kind"], string> = {
@@ -40,16 +41,6 @@ function roadOf(route: ConditionalRoute, { edge_id, from_edge, to_edge, place }:
   const turns = route.parts.filter((part) => part.from_edge && part.to_edge);
   const nearest = turns.reduce<RoutePart | null>((best, one) => (best && far(best) <= far(one) ? best : one), null);
   return nearest?.from_edge && nearest.to_edge ? { from: nearest.from_edge, to: nearest.to_edge } : null;
-}
-
-/** The place so many metres along a route. */
-export function along({ geometry, length_m }: ConditionalRoute, s_m: number): Position {
-  const line = geometry.coordinates;
-  const shrink = Math.cos(((line[0]?.[1] ?? 0) * Math.PI) / 180);
-  const lengths = line.slice(1).map((b, i) => Math.hypot((b[0] - line[i]![0]) * shrink, b[1] - line[i]![1]));
-  let left = (s_m / Math.max(length_m, 1)) * lengths.reduce((sum, one) => sum + one, 0);
-  const at = lengths.findIndex((one) => (left -= one) <= 0);
-  return line[at < 0 ? line.length - 1 : at] ?? [0, 0];
 }
 
 /** `3 conditions hold` */

@@ -1,14 +1,15 @@
 // A route between two places: certified, or under conditions, or what blocks it.
 
-import type { ConditionalRoute, Position, Route, RouteAnswer, RoutePart } from "../api/types.ts";
+import type { ConditionalRoute, Position, Route, RouteAnswer, RoutePart, StripUse } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
 import type { Places } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { distance } from "../units.ts";
+import { distance, length } from "../units.ts";
 import { duration, margin, signed } from "../words.ts";
+import { along } from "./along.ts";
 import { reasons } from "./blocked.ts";
-import { along, conditionalFoot, conditionalHead } from "./conditions.ts";
+import { conditionalFoot, conditionalHead } from "./conditions.ts";
 import { NumberedList, type Item, type NumberedActions } from "./numbered.ts";
 import { takeAlong, type About } from "./takealong.ts";
 
@@ -110,6 +111,7 @@ export class RoutePanel {
         h("strong", {}, margin(route.rsc_m)),
       ),
       h("p", { class: "headline-words" }, `Tightest after ${distance(route.limiting_s_m)}${where}: ${route.limiting_unit_name ?? "a unit"}, ${route.limiting_side} side.`),
+      ...this.#uses(route.uses),
       go,
       ...this.#others(routes, chosen, others),
       takeAlong(route, about),
@@ -117,6 +119,22 @@ export class RoutePanel {
       h("h3", {}, "Along the way"),
       this.#parts(route.parts, palette, (part) => this.actions.seek(part.from_m)),
       h("p", { class: "scope" }, `${tolerance}Proved from end to end within the stated model, widths and error bounds; no permit. ${ways}`),
+    ];
+  }
+
+  /** Where the vehicle may use more than its own lane. Whoever reads of the oncoming lane reads what that asks for. */
+  #uses(uses: readonly StripUse[]): Node[] {
+    if (uses.length === 0) return [];
+    const rows = uses.map((used) => {
+      const where = used.where === "turn" ? "at the turn" : `${used.side} side`;
+      const words = `${used.what}, ${distance(used.to_m - used.from_m)}, at most ${length(Math.ceil(used.beyond_m * 100) / 100)} over the line, ${where}`;
+      return h("li", {}, h("button", { type: "button", onclick: () => this.actions.seek(used.from_m) }, h("b", {}, used.title), h("span", {}, words)));
+    });
+    const oncoming = uses.some(({ strip }) => strip === "carriageway");
+    return [
+      h("h3", {}, "Beyond its own lane"),
+      h("ol", { class: "uses" }, ...rows),
+      ...(oncoming ? [h("p", { class: "note" }, "Oncoming traffic must be held back where the dashes are inside the line. Nothing here says that it is.")] : []),
     ];
   }
 

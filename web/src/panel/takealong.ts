@@ -20,8 +20,14 @@ function escaped(text: string): string {
   return text.replace(/[&<>"']/g, (one) => names[one] ?? "").replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f]/g, "");
 }
 
-function scoped({ vehicle, policy, scope }: About): string {
-  return `For ${vehicle}, strip: ${policy}. ${scope}`;
+function scoped(route: Route, { vehicle, policy, scope }: About): string {
+  return `For ${vehicle}, strip: ${policy}. ${beyond(route)}${scope}`;
+}
+
+/** Where the route uses more than its own lane, in one sentence. */
+function beyond({ uses }: Route): string {
+  const stretches = uses.map((used) => `${used.what} from ${used.from_m.toFixed(0)} m to ${used.to_m.toFixed(0)} m, at most ${used.beyond_m.toFixed(2)} m over the line`);
+  return uses.length === 0 ? "" : `Beyond its own lane: ${stretches.join("; ")}. `;
 }
 
 export function gpx(route: Route, about: About): string {
@@ -29,7 +35,7 @@ export function gpx(route: Route, about: About): string {
   const time = about.timestamp ? `<time>${escaped(about.timestamp)}</time>` : "";
   return `<?xml version="1.0" encoding="UTF-8"?>
 <gpx version="1.1" creator="netcert" xmlns="http://www.topografix.com/GPX/1/1">
-<metadata><name>${escaped(`Certified route for ${about.vehicleName}`)}</name><desc>${escaped(scoped(about))}</desc>${time}</metadata>
+<metadata><name>${escaped(`Certified route for ${about.vehicleName}`)}</name><desc>${escaped(scoped(route, about))}</desc>${time}</metadata>
 <trk><name>${escaped(`netcert ${about.vehicle}`)}</name><trkseg>
 ${points}
 </trkseg></trk>
@@ -38,8 +44,8 @@ ${points}
 }
 
 export function geojson(route: Route, about: About): string {
-  const { length_m, time_s, rsc_m, hinge_margin_deg, shrink, safe, limiting_s_m, limiting_at } = route;
-  const properties = { ...about, length_m, time_s, rsc_m, hinge_margin_deg, shrink, safe, limiting_s_m, limiting_at };
+  const { length_m, time_s, rsc_m, hinge_margin_deg, shrink, safe, limiting_s_m, limiting_at, rung, uses } = route;
+  const properties = { ...about, length_m, time_s, rsc_m, hinge_margin_deg, shrink, safe, limiting_s_m, limiting_at, rung, uses };
   const feature = (geometry: { type: string; coordinates: Position[] }) => ({ type: "Feature", geometry, properties });
   return `${JSON.stringify({ type: "FeatureCollection", features: [feature(route.geometry)] })}\n`;
 }

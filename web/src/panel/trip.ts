@@ -1,6 +1,6 @@
 // The places of a route as fields of text: a road by its name or number, or a coordinate. Between beginning and end there may be stops.
 
-import type { Position } from "../api/types.ts";
+import type { Policy, Position } from "../api/types.ts";
 import { coordinateText } from "../coordinate.ts";
 import { MOST_VIA, type Places } from "../state.ts";
 import { h } from "../ui/dom.ts";
@@ -15,13 +15,36 @@ export function roleOf(index: number, count: number): string {
   return index === 0 ? "From" : index === count - 1 ? "To" : `Via ${index}`;
 }
 
+/** What a route may use beside the strip of its policy. */
+const roomWords: Record<Policy, string> = {
+  lane: "its own lane",
+  direction: "all lanes of its direction",
+  carriageway: "the oncoming lane, too",
+};
+
 export class Trip {
   readonly element = h("form", { class: "trip", "aria-label": "Places of the route", onsubmit: (event: Event) => event.preventDefault() });
   readonly #names = new Map<string, string>();
   #fields: Search[] = [];
   #shown: Places = [];
 
-  constructor(private readonly change: (places: Places) => void) {}
+  /** How much of the road a route may use, where its vehicle could use more. */
+  readonly room = h("div", { class: "trip-room" });
+
+  constructor(private readonly change: (places: Places) => void, private readonly allow: (atMost: Policy | null) => void) {}
+
+  /** Offers the strips that are wider than the policy's. */
+  offer(wider: readonly Policy[], chosen: Policy | null): void {
+    this.room.hidden = wider.length === 0;
+    const option = (value: Policy | null, text: string) => h("option", { value: value ?? "", selected: value === chosen }, text);
+    const select = h(
+      "select",
+      { id: "trip-room", onchange: () => this.allow((select.value || null) as Policy | null) },
+      option(null, "nothing more"),
+      ...wider.map((policy) => option(policy, roomWords[policy])),
+    );
+    this.room.replaceChildren(h("label", { for: "trip-room" }, "Where it is too narrow, use"), select);
+  }
 
   /** Gives a place a name, which its field then shows instead of the coordinate. */
   name(place: Position, name: string): void {
@@ -67,7 +90,7 @@ export class Trip {
       this.focus();
     };
     const add = h("button", { class: "small", type: "button", disabled: count >= MOST_VIA + 2, onclick: stop }, icon("plus"), "Add a stop");
-    this.element.replaceChildren(...rows, h("div", { class: "tools" }, swap, add));
+    this.element.replaceChildren(...rows, h("div", { class: "tools" }, swap, add), this.room);
   }
 
   #field(index: number, count: number): Search {

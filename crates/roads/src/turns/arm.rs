@@ -36,6 +36,8 @@ pub struct StrokeLine {
     carriageway: Vec<RoadEdges>,
     /// The same without steps: where the road becomes wider, it does so gradually.
     gradual: [Vec<RoadEdges>; 2],
+    /// The edges of the corridor's strip as the map has them, without tapers.
+    mapped: Vec<RoadEdges>,
 }
 
 impl StrokeLine {
@@ -75,15 +77,23 @@ impl StrokeLine {
             }
         }
         let gradual = [&direction, &carriageway].map(|edges| gradual(&made.corridor, edges));
-        Ok(Self { stroke, made, closed: facts.closed, direction, carriageway, gradual })
+        Ok(Self { stroke, made, closed: facts.closed, direction, carriageway, gradual, mapped })
     }
 
     /// A drawn road, which has nothing beside its corridor.
     pub(super) fn drawn(stroke: u32, made: StrokeCorridor) -> Self {
         let c = &made.corridor;
         let own: Vec<RoadEdges> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
-        let [direction, carriageway, first, second] = [own.clone(), own.clone(), own.clone(), own];
-        Self { stroke, made, closed: false, direction, carriageway, gradual: [first, second] }
+        let [direction, carriageway, first, second] = [own.clone(), own.clone(), own.clone(), own.clone()];
+        Self { stroke, made, closed: false, direction, carriageway, gradual: [first, second], mapped: own }
+    }
+
+    /// The edges of `part`, a strip of the road at a station, metres to the left of the centreline: `[left, right]`. `own` is the strip that
+    /// the corridor has there. Both are measured from the same line, as the strips of one cross section are.
+    #[must_use]
+    pub fn edges_of(&self, station: usize, own: Strip, part: Strip) -> Option<[f64; 2]> {
+        let [left_m, right_m] = *self.mapped.get(station)?;
+        Some([left_m + f64::from(part.left_m - own.left_m), right_m + f64::from(part.right_m - own.right_m)])
     }
 
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the

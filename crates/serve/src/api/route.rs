@@ -5,11 +5,12 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::super::answer::StoredAnswer;
-use super::super::ask::{DecodedRequest, policy};
+use super::super::ask::{DecodedRequest, one_of, policy};
 use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router, Sheets};
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::{GEOJSON, SCOPE, answered};
+use crate::osm::facts::Policy;
 use crate::picture;
 use crate::route::{Measure, Question};
 use crate::words::Named;
@@ -22,8 +23,20 @@ const SNAP_M: f64 = 100.0;
 const TRIES: u32 = 12;
 
 /// The parameters of a route and of its sheets.
-const PARAMETERS: [&str; 11] =
-    ["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive", "conditions"];
+const PARAMETERS: [&str; 12] = [
+    "vehicle",
+    "policy",
+    "at_most",
+    "from",
+    "to",
+    "via*",
+    "alternatives",
+    "snap",
+    "tries",
+    "least",
+    "drive",
+    "conditions",
+];
 
 /// `/api/route`
 pub(in super::super) fn route(
@@ -106,17 +119,13 @@ fn planned(
         "distance" => Measure::Distance,
         _ => return Err(Problem::parameter("least", "give time or distance")),
     };
-    if !region.policies(&vehicle.id).contains(&(policy, true)) {
-        let (id, policy) = (&vehicle.id, policy.name());
-        return Err(Problem::not_found(format!(
-            "the turns of {id} are not certified under the {policy} policy; `netcert certify --vehicle {id} --corridor \
-             {policy}` does that"
-        )));
-    }
-    let key = format!("{} {} {measure:?}", vehicle.id, policy.name());
+    let strips = strips(region, ask, &vehicle.id, policy)?;
+    let sets = strips.iter().map(|&policy| region.certified(&vehicle.id, policy)).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<&str> = strips.iter().map(|policy| policy.name()).collect();
+    let key = format!("{} {} {measure:?}", vehicle.id, names.join(" "));
     let question = format!("{key} {:?} {} {}", ride.question, ride.drives, ride.conditions);
     planners.planned.get(&question, || {
-        let router = planners.routers.get(&key, || Router::start(region, &certified, measure))?;
+        let router = planners.routers.get(&key, || Router::start(region, &sets, measure))?;
         let Some(answer) = router.ask(ride) else {
             planners.routers.forget(&key);
             return Err(Problem::fault("the search for routes broke off"));
@@ -128,6 +137,32 @@ fn planned(
         ));
         Ok(planned)
     })
+}
+
+/// The policies of a route: that of the question, and wider ones if `at_most` allows them and the vehicle's turns are certified under them.
+fn strips(region: &RegionState, ask: &DecodedRequest, id: &str, base: Policy) -> Result<Vec<Policy>, Problem> {
+    let certified = region.policies(id);
+    let has_turns = |policy: Policy| certified.contains(&(policy, true));
+    let missing = |policy: Policy| {
+        let policy = policy.name();
+        Problem::not_found(format!(
+            "the turns of {id} are not certified under the {policy} policy; `netcert certify --vehicle {id} --corridor \
+             {policy}` does that"
+        ))
+    };
+    if !has_turns(base) {
+        return Err(missing(base));
+    }
+    let Some(top) = ask.parameter("at_most").map(|word| one_of("at_most", word)).transpose()? else {
+        return Ok(vec![base]);
+    };
+    if top <= base {
+        return Err(Problem::parameter("at_most", "name a policy that is wider than `policy`, or leave it out"));
+    }
+    if !has_turns(top) {
+        return Err(missing(top));
+    }
+    Ok(Policy::ALL.iter().copied().filter(|&policy| policy >= base && policy <= top && has_turns(policy)).collect())
 }
 
 fn ride(ask: &DecodedRequest) -> Result<RouteQuestion, Problem> {

@@ -15,17 +15,7 @@ const PLACES: usize = 8;
 
 /// Asserts that the adversary finds nothing below the RSC, and no hinge beyond its margin.
 pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, seed: u64) {
-    let result = &certificate.result;
-    let at = &result.limiting;
-    let limiting = BodyPoint {
-        foot_m: at.station as f64 * corridor.spacing_m,
-        unit: at.unit,
-        side: if at.side == Side::Left { 1.0 } else { -1.0 },
-        ahead_m: at.point_m,
-    };
-    let plan = certificate.plan.clone();
-    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m.unwrap(), result.shrink, result.hinge_margin_rad.unwrap());
-    let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
+    let claim = claim(corridor, certificate);
     if !corridor.areas.is_empty() {
         let found = area_attack::attack_areas(corridor, vehicle, &claim, &mut Draw(seed), PLACES);
         let length_m = corridor.len() as f64 * corridor.spacing_m;
@@ -39,4 +29,25 @@ pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, s
     println!("{length_m:.0} m, RSC {:.3} m, {}", claim.rsc_m, attack::describe(&outcome));
     assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, attack::describe(&outcome));
     assert!(outcome.hinge.0 >= claim.hinge_margin_rad - 1e-6);
+}
+
+/// Places of all bodies on a drive under disturbances that the certificate allows, metres in the corridor's frame.
+pub fn driven(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, draw: &mut Draw) -> Vec<[f64; 2]> {
+    let claim = claim(corridor, certificate);
+    let path = attack::path(corridor, vehicle, &claim);
+    attack::Attack::new(corridor, vehicle, &path, claim.shrink).driven(draw)
+}
+
+fn claim(corridor: &Corridor, certificate: &Certificate) -> Claim {
+    let result = &certificate.result;
+    let at = &result.limiting;
+    let limiting = BodyPoint {
+        foot_m: at.station as f64 * corridor.spacing_m,
+        unit: at.unit,
+        side: if at.side == Side::Left { 1.0 } else { -1.0 },
+        ahead_m: at.point_m,
+    };
+    let plan = certificate.plan.clone();
+    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m.unwrap(), result.shrink, result.hinge_margin_rad.unwrap());
+    Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan }
 }

@@ -206,6 +206,18 @@ impl CrossSection {
             Policy::Carriageway => self.carriageway,
         }
     }
+
+    /// The section of a road on which the vehicle may use the strip of `policy` where a narrower one is asked for. A strip without usable
+    /// width opens nothing.
+    #[must_use]
+    pub fn opened_to(self, policy: Policy) -> Self {
+        let opened = |own: Option<Strip>, of: Policy| if of < policy { self.strip(policy).or(own) } else { own };
+        Self {
+            lane: opened(self.lane, Policy::Lane),
+            direction: opened(self.direction, Policy::Direction),
+            carriageway: self.carriageway,
+        }
+    }
 }
 
 /// A tagged limit, which may be unreadable. An unreadable limit makes the verdict `unknown`.
