@@ -46,6 +46,8 @@ pub use provenance::signatures::SignatureRecord;
 pub use register::evidence::Register;
 pub use results::carry_over::{StoredCertificate, StoredPlans};
 pub use results::checkpoint::{Checkpoint, CheckpointStage, PartOfWork};
+pub use results::pages::PageQuery;
+pub use results::predicate::{ComparisonSign, Literal, Predicate};
 pub use results::query::{Area, QueryOptions, Rows};
 pub use results::relative::{
     DRIVABLE_BY, IndexedStanding, Reference, ReferenceCertificates, ReferenceReader, VehicleSettings,

@@ -5,7 +5,7 @@ use std::pin::Pin;
 
 use futures_util::{Stream, TryStreamExt as _};
 use sqlx::AssertSqlSafe;
-use sqlx::sqlite::SqliteRow;
+use sqlx::sqlite::{SqliteArguments, SqliteRow};
 use tokio::runtime::Runtime;
 
 use crate::osm::facts::Policy;
@@ -38,6 +38,17 @@ impl Database {
     /// The rows of a statement without parameters.
     pub(crate) fn streamed_plainly<T>(&mut self, sql: String, read: fn(&SqliteRow) -> Sql<T>) -> RowStream<'_, T> {
         let stream = sqlx::query(AssertSqlSafe(sql)).fetch(&mut self.session.connection);
+        RowStream { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+    }
+
+    /// The rows of a statement with the values of its parameters.
+    pub(crate) fn streamed_with<T>(
+        &mut self,
+        sql: String,
+        values: SqliteArguments,
+        read: fn(&SqliteRow) -> Sql<T>,
+    ) -> RowStream<'_, T> {
+        let stream = sqlx::query_with(AssertSqlSafe(sql), values).fetch(&mut self.session.connection);
         RowStream { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
 

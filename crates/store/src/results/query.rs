@@ -114,7 +114,8 @@ impl Database {
         Ok(Rows { stream, runtime: &self.session.runtime, path: &self.session.path, area })
     }
 
-    fn vehicle_no_of_set(&mut self, vehicle: &str, policy: Policy) -> Result<u32, StoreError> {
+    /// The number of a vehicle that is certified under this policy.
+    pub(crate) fn vehicle_no_of_set(&mut self, vehicle: &str, policy: Policy) -> Result<u32, StoreError> {
         let number: Option<u32> = self.session.run(async |c| {
             let sql = "SELECT vehicle_no FROM certified_set JOIN vehicle USING (vehicle_no) \
                        WHERE vehicle_id = ? AND corridor_no = ?";
@@ -137,19 +138,25 @@ pub(crate) fn polygons(area: &Area) -> geo::MultiPolygon {
     }
 }
 
+/// The columns that [`edge_row`] reads, of a set whose vehicle and policy are the first two values.
+pub(crate) fn select(policy: Policy) -> String {
+    let [width, source] = width_columns(policy);
+    format!(
+        "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
+         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, c.need_cm, {columns} \
+         FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+         WHERE c.vehicle_no = ? AND c.corridor_no = ?",
+        columns = numbers::COLUMNS
+    )
+}
+
 fn statement(
     options: &QueryOptions,
     vehicle_no: u32,
     area: Option<&geo::MultiPolygon>,
 ) -> Sql<(String, SqliteArguments)> {
     let [width, source] = width_columns(options.policy);
-    let mut sql = format!(
-        "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
-         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, c.need_cm, {columns} \
-         FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
-         WHERE c.vehicle_no = ? AND c.corridor_no = ?",
-        columns = numbers::COLUMNS
-    );
+    let mut sql = select(options.policy);
     let mut values = SqliteArguments::default();
     let mut bind = |value: f64| values.add(value).map_err(sqlx::Error::Encode);
     bind(f64::from(vehicle_no))?;
@@ -189,7 +196,7 @@ fn statement(
     Ok((sql, values))
 }
 
-fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
+pub(crate) fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
     let fid: u32 = row.try_get(0)?;
     Ok(EdgeRow {
         edge: edge_key(row, 1)?,

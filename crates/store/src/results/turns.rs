@@ -312,17 +312,22 @@ async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow
     rows.fetch_all(c).await?.iter().map(turn_row).collect()
 }
 
-/// The statement of a query, whose rows [`turn_row`] reads. The caller binds the vehicle's id and the corridor's number.
-pub(crate) fn statement(options: &TurnQuery) -> String {
+/// The columns that [`turn_row`] reads.
+pub(crate) fn select() -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
                    (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
                    (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid), c.need_kerb_cm, c.need_flare_cm, "
         .to_owned();
     sql += numbers::COLUMNS;
-    sql += " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
-            CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
-            WHERE c.corridor_no = ?2 AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?1)";
+    sql + " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+           CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid"
+}
+
+/// The statement of a query, whose rows [`turn_row`] reads. The caller binds the vehicle's id and the corridor's number.
+pub(crate) fn statement(options: &TurnQuery) -> String {
+    let mut sql = select()
+        + " WHERE c.corridor_no = ?2 AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?1)";
     if let Some(kind) = options.verdict {
         sql += &format!(" AND {}", of_kind("c.verdict_no", kind));
     }

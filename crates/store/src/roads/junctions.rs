@@ -3,7 +3,7 @@
 use std::io;
 
 use sqlx::Row as _;
-use sqlx::sqlite::SqliteConnection;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
 use crate::osm::{LonLat, NodeId};
 use netcert_roads::turns::{JunctionArea, KerbSource};
@@ -29,16 +29,7 @@ impl Database {
     /// The file cannot be read.
     pub fn junction_areas(&mut self) -> Result<Vec<JunctionArea>, StoreError> {
         self.session.run(async |c| {
-            rows(c, "SELECT node_id, roads, kerb_source, geom FROM junction ORDER BY node_id", |row| {
-                let node = NodeId::new(row.try_get(0)?);
-                let damaged = || content(format!("the area of junction {node}"));
-                let kerb_source =
-                    row.try_get::<Option<&str>, _>(2)?.map(|word| KerbSource::named(word).ok_or_else(damaged));
-                let roads = usize::try_from(row.try_get::<i64, _>(1)?).map_err(|_| damaged())?;
-                let polygons = blob::decode_polygons(row.try_get(3)?).ok_or_else(damaged)?;
-                Ok(JunctionArea { node, roads, kerb_source: kerb_source.transpose()?, polygons })
-            })
-            .await
+            rows(c, "SELECT node_id, roads, kerb_source, geom FROM junction ORDER BY node_id", junction_area).await
         })
     }
 
@@ -53,7 +44,7 @@ impl Database {
         let Bounds { west, south, east, north } = bounds;
         self.session.run(async |c| {
             let query = sqlx::query(sql).bind(west).bind(east).bind(south).bind(north);
-            let read = |row: &sqlx::sqlite::SqliteRow| {
+            let read = |row: &SqliteRow| {
                 let node = NodeId::new(row.try_get(0)?);
                 let polygons = blob::decode_polygons(row.try_get(1)?);
                 Ok((node, polygons.ok_or_else(|| content(format!("the area of junction {node}")))?))
@@ -61,6 +52,19 @@ impl Database {
             query.fetch_all(c).await?.iter().map(read).collect()
         })
     }
+}
+
+/// The columns that [`junction_area`] reads.
+pub(crate) const COLUMNS: &str = "node_id, roads, kerb_source, geom";
+
+/// Reads the area of a junction from [`COLUMNS`].
+pub(crate) fn junction_area(row: &SqliteRow) -> Sql<JunctionArea> {
+    let node = NodeId::new(row.try_get(0)?);
+    let damaged = || content(format!("the area of junction {node}"));
+    let kerb_source = row.try_get::<Option<&str>, _>(2)?.map(|word| KerbSource::named(word).ok_or_else(damaged));
+    let roads = usize::try_from(row.try_get::<i64, _>(1)?).map_err(|_| damaged())?;
+    let polygons = blob::decode_polygons(row.try_get(3)?).ok_or_else(damaged)?;
+    Ok(JunctionArea { node, roads, kerb_source: kerb_source.transpose()?, polygons })
 }
 
 /// Registers the areas as a layer.

@@ -34,9 +34,18 @@ impl Database {
     /// # Errors
     /// The file cannot be read.
     pub fn extent(&mut self) -> Result<Option<Bounds>, StoreError> {
-        let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'edge'";
-        let row =
-            self.session.run(async |c| sqlx::query(sql).fetch_optional(c).await?.as_ref().map(sides).transpose())?;
+        self.layer_extent("edge")
+    }
+
+    /// The box around a layer: `edge`, `turn` or `junction`; `None` if there is no such layer or it is empty.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn layer_extent(&mut self, layer: &str) -> Result<Option<Bounds>, StoreError> {
+        let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = ?";
+        let row = self
+            .session
+            .run(async |c| sqlx::query(sql).bind(layer).fetch_optional(c).await?.as_ref().map(sides).transpose())?;
         Ok(row.flatten())
     }
 
