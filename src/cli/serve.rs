@@ -27,8 +27,8 @@ Examples:
   netcert serve --edit                                      measurements can be added on the page
   netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
 
-/api/openapi.json describes the JSON interface. If a database is replaced while the server runs,
-the next request is answered from the new one.")]
+/api/openapi.json describes the JSON interface. QGIS and GDAL read layers from /ogc (OGC API – Features).
+If a database is replaced while the server runs, the next request is answered from the new one.")]
 pub(crate) struct Serve {
     #[command(flatten)]
     db: DatabaseArgs,

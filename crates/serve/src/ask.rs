@@ -19,6 +19,11 @@ use crate::words::Named;
 const MOST_PARAMETERS: usize = 24;
 /// Longest value of one parameter, characters.
 const LONGEST_VALUE: usize = 200;
+/// Longest condition of a request, characters, and the parameter that it stands in.
+const LONGEST_FILTER: usize = 2000;
+const FILTER: &str = "filter";
+/// Answers below this path have whole addresses in them, so they depend on the host that was asked.
+pub(super) const ADDRESSED: &str = "/ogc";
 /// A parameter that every endpoint accepts: the state of the database that the client has seen. See `answer`.
 pub(super) const STATE: &str = "state";
 
@@ -28,6 +33,8 @@ pub(super) struct DecodedRequest {
     path: String,
     names: Vec<(String, String)>,
     parameters: Vec<(String, String)>,
+    /// Scheme, host and port by which the server was asked; empty if the request does not say.
+    origin: String,
     pub(super) if_none_match: Option<String>,
     pub(super) gzip: bool,
     /// Told to stop when nobody waits for the answer any more.
@@ -44,8 +51,26 @@ impl<S: Send + Sync> FromRequestParts<S> for DecodedRequest {
         let parameters = read_query(parts.uri.query().unwrap_or_default())?;
         let if_none_match = text(&parts.headers, header::IF_NONE_MATCH);
         let gzip = text(&parts.headers, header::ACCEPT_ENCODING).is_some_and(|accepts| takes_gzip(&accepts));
-        Ok(Self { path: parts.uri.path().to_owned(), names, parameters, if_none_match, gzip, stop: Stop::default() })
+        let (path, origin, stop) = (parts.uri.path().to_owned(), origin(parts), Stop::default());
+        Ok(Self { path, names, parameters, origin, if_none_match, gzip, stop })
     }
+}
+
+/// Scheme, host and port of the request. A proxy that encrypts says so in `X-Forwarded-Proto`. Empty if the host has characters that no host
+/// has.
+fn origin(parts: &Parts) -> String {
+    let host = parts.uri.authority().map(|authority| authority.as_str().to_owned());
+    let host = host.or_else(|| text(&parts.headers, header::HOST)).unwrap_or_default();
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_' | ':' | '[' | ']');
+    if host.is_empty() || !host.chars().all(plain) {
+        return String::new();
+    }
+    let forwarded = text(&parts.headers, header::HeaderName::from_static("x-forwarded-proto"));
+    // The first one is the proxy that the client asked.
+    let encrypted =
+        |schemes: String| schemes.split(',').next().is_some_and(|own| own.trim().eq_ignore_ascii_case("https"));
+    let scheme = if forwarded.is_some_and(encrypted) { "https" } else { "http" };
+    format!("{scheme}://{host}")
 }
 
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<String> {
@@ -72,9 +97,10 @@ fn read_query(query: &str) -> Result<Vec<(String, String)>, Problem> {
         if parameters.len() == MOST_PARAMETERS {
             return Err(Problem::parameter("query", format!("more than {MOST_PARAMETERS} parameters")));
         }
-        let long = |text: &str| text.chars().nth(LONGEST_VALUE).is_some();
+        let most = if name == FILTER { LONGEST_FILTER } else { LONGEST_VALUE };
+        let long = |text: &str| text.chars().nth(most).is_some();
         if long(&value) || long(&name) {
-            return Err(Problem::parameter(&shortened(&name), format!("longer than {LONGEST_VALUE} characters")));
+            return Err(Problem::parameter(&shortened(&name), format!("longer than {most} characters")));
         }
         parameters.push((name.into_owned(), value.into_owned()));
     }
@@ -91,6 +117,13 @@ pub(super) fn shortened(text: &str) -> String {
 }
 
 impl DecodedRequest {
+    /// A request with these parameters.
+    #[cfg(test)]
+    pub(super) fn with_parameters(parameters: &[(&str, &str)]) -> Self {
+        let parameters = parameters.iter().map(|&(name, value)| (name.to_owned(), value.to_owned())).collect();
+        Self { parameters, ..Self::default() }
+    }
+
     /// Refuses parameters that `known` lacks, and parameters that are given twice. An entry of `known` that ends in `*`
     /// may be given several times.
     pub(super) fn only(&self, known: &[&str]) -> Result<(), Problem> {
@@ -133,6 +166,9 @@ impl DecodedRequest {
         let mut parameters: Vec<_> = self.parameters.iter().filter(|pair| pair.0 != STATE).collect();
         parameters.sort_by(|a, b| a.0.cmp(&b.0)); // stable, so several values of one name keep their order
         let mut key = self.path.clone();
+        if key.starts_with(ADDRESSED) {
+            key.insert_str(0, &self.origin);
+        }
         for (name, value) in parameters {
             // Names and values are escaped, so `\n` can separate them.
             key.push('\n');
@@ -141,6 +177,20 @@ impl DecodedRequest {
             key.push_str(&value.escape_default().to_string());
         }
         key
+    }
+
+    /// Scheme, host and port by which the server was asked, without a slash at the end.
+    pub(super) fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// The whole address of this request, with another value of one parameter if there is one.
+    pub(super) fn address(&self, other: Option<(&str, &str)>) -> String {
+        let kept = self.parameters.iter().filter(|pair| other.is_none_or(|other| other.0 != pair.0));
+        let kept = kept.map(|pair| (pair.0.as_str(), pair.1.as_str()));
+        let query = form_urlencoded::Serializer::new(String::new()).extend_pairs(kept.chain(other)).finish();
+        let mark = if query.is_empty() { "" } else { "?" };
+        format!("{}{}{mark}{query}", self.origin, self.path)
     }
 
     /// The whole number of a parameter, within bounds. `None` if the parameter is missing.
@@ -231,6 +281,21 @@ mod tests {
         assert_eq!(ask("/a", "b=1&a=2&state=9").key(), ask("/a", "a=2&b=1").key());
         assert_ne!(ask("/a", "via=1&via=2").key(), ask("/a", "via=2&via=1").key());
         assert_ne!(ask("/a", "q=x%0Ay%0Az").key(), ask("/a", "q=x&y=z").key());
+    }
+
+    #[test]
+    fn an_address_has_another_value_where_one_is_given() {
+        let ask = DecodedRequest {
+            origin: "http://localhost:80".to_owned(),
+            ..ask("/ogc/x", "limit=5&after=1&filter=a+%3D+'%26'")
+        };
+        assert_eq!(ask.address(None), "http://localhost:80/ogc/x?limit=5&after=1&filter=a+%3D+%27%26%27");
+        let next = "http://localhost:80/ogc/x?limit=5&filter=a+%3D+%27%26%27&after=2-f";
+        assert_eq!(ask.address(Some(("after", "2-f"))), next);
+        let other = DecodedRequest { origin: "https://localhost:80".to_owned(), ..ask.clone() };
+        assert_ne!(other.key(), ask.key(), "its links differ");
+        assert!(read_query(&format!("filter={}", "a".repeat(2000))).is_ok());
+        assert!(read_query(&format!("filter={}", "a".repeat(2001))).is_err());
     }
 
     #[test]

@@ -27,7 +27,8 @@
 //! | `memo` | values that are made on first use; the last results of long work |
 //! | `search` | roads by what people type |
 //! | `tiles` | vector tiles |
-//! | `api` | all other endpoints, one file each |
+//! | `api` | the JSON interface, one file for each endpoint |
+//! | `ogc` | OGC API – Features |
 //! | `assets` | the page |
 //!
 //! No module uses one above it. From below:
@@ -35,7 +36,7 @@
 //! 1. `options`, `editing`, `ids`, `lines`, `problem`, `ask`, `answer`, `cache`, `memo`, `work` know no database.
 //! 2. `roads`, `search` and `region` read one file.
 //! 3. `older`, `changes`, `planning`, `drive` and `tiles` make results from regions. Each defines how many of its results are kept.
-//! 4. `api` answers from the values that an endpoint needs. `state` puts these values together.
+//! 4. `api` and `ogc` answer from the values that an endpoint needs. `state` puts these values together.
 //! 5. `app`, `gate`, `assets`, `routes` and `run` connect requests to them.
 
 use netcert_base::{speed_profile, stop, vehicle, verdict, words};
@@ -65,6 +66,7 @@ mod gate;
 mod ids;
 mod lines;
 mod memo;
+mod ogc;
 mod older;
 mod options;
 mod planning;

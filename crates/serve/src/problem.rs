@@ -79,6 +79,11 @@ impl Problem {
         Self::new(StatusCode::CONFLICT, "stale", "The certificates are of another version", detail)
     }
 
+    /// What was begun with one state of the database cannot go on with another one.
+    pub(super) fn changed(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::CONFLICT, "changed", "The database has changed", detail)
+    }
+
     /// The program has a fault.
     pub(super) fn fault(detail: impl Into<String>) -> Self {
         let title = "A fault of netcert; please report it";

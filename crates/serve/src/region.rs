@@ -92,6 +92,7 @@ pub(super) struct RegionState {
     roads: Late<Arc<RoadIndex>>,
     finder: Late<Arc<Finder>>,
     sides: Late<Arc<DrivingSides>>,
+    junctions: Late<u64>,
     /// The numbers of all edges in the last sets, by vehicle and policy.
     numbers: Recent<Vec<MapNumbers>>,
 }
@@ -132,6 +133,7 @@ impl RegionState {
             roads: Late::default(),
             finder: Late::default(),
             sides: Late::default(),
+            junctions: Late::default(),
             numbers: Recent::new(MOST_NUMBERS),
         };
         Ok(region)
@@ -256,6 +258,21 @@ impl RegionState {
     /// The driving side of every edge; the first call reads them.
     pub(super) fn sides(&self) -> Result<Arc<DrivingSides>, Problem> {
         self.sides.get(|| self.read(Database::driving_sides).map(Arc::new))
+    }
+
+    /// The number of edges.
+    pub(super) fn edge_count(&self) -> u64 {
+        self.edges as u64
+    }
+
+    /// The number of junctions with an area; the first call counts them.
+    pub(super) fn junction_count(&self) -> Result<u64, Problem> {
+        self.junctions.get(|| self.read(Database::junctions))
+    }
+
+    /// The sets of certificates in their order, each with whether its turns are certified, too.
+    pub(super) fn sets_with_turns(&self) -> impl Iterator<Item = (&CertifiedSet, bool)> {
+        self.sets.iter().zip(self.turns.iter().copied())
     }
 
     pub(super) fn vehicle(&self, id: &str) -> Result<&Vehicle, Problem> {

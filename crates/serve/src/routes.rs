@@ -15,6 +15,8 @@ use super::ask::DecodedRequest;
 use super::assets;
 use super::editing;
 use super::gate::gate;
+use super::ogc;
+use super::options::ServerOptions;
 use super::problem::Problem;
 use super::state::ServedState;
 use super::tiles;
@@ -53,12 +55,37 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     }),
 ];
 
+type FeatureWork = fn(&ServedState, &DecodedRequest, &ServerOptions) -> Result<StoredAnswer, Problem>;
+
+/// The addresses of OGC API – Features. All of them read some rows.
+const FEATURES: &[(&str, FeatureWork)] = &[
+    ("/ogc", |served, ask, _| ogc::landing(&served.region, ask)),
+    ("/ogc/", |served, ask, _| ogc::landing(&served.region, ask)),
+    ("/ogc/api", |_, ask, _| ogc::api(ask)),
+    ("/ogc/conformance", |_, ask, _| ogc::conformance(ask)),
+    ("/ogc/collections", |served, ask, _| ogc::collections(&served.region, ask)),
+    ("/ogc/collections/{collectionId}", |served, ask, _| ogc::collection(&served.region, ask)),
+    ("/ogc/collections/{collectionId}/queryables", |served, ask, _| ogc::queryables(&served.region, ask)),
+    ("/ogc/collections/{collectionId}/schema", |served, ask, _| ogc::schema(&served.region, ask)),
+    ("/ogc/collections/{collectionId}/items", |served, ask, options| {
+        ogc::items(&served.region, &served.state, &(options.now)(), ask)
+    }),
+    ("/ogc/collections/{collectionId}/items/{featureId}", |served, ask, _| ogc::item(&served.region, ask)),
+];
+
 /// The whole server except listening.
 pub(super) fn router(app: Arc<App>) -> Router {
     let mut router = Router::new();
     for &(path, pace, work) in ENDPOINTS {
         let answer =
             move |State(app): State<Arc<App>>, ask: DecodedRequest| async move { app.answer(ask, pace, work).await };
+        router = router.route(path, get(answer));
+    }
+    for &(path, work) in FEATURES {
+        let answer = move |State(app): State<Arc<App>>, ask: DecodedRequest| async move {
+            let options = app.options.clone();
+            app.answer(ask, Pace::Quick, move |served, ask| work(served, ask, &options)).await
+        };
         router = router.route(path, get(answer));
     }
     router
@@ -130,6 +157,14 @@ mod tests {
             format!("{path}{end}")
         });
         let mut answered: Vec<String> = answered.collect();
+        described.sort_unstable();
+        answered.sort_unstable();
+        assert_eq!(described, answered);
+
+        let document: serde_json::Value = serde_json::from_str(ogc::OPENAPI).unwrap();
+        let described = document["paths"].as_object().unwrap().keys().map(|path| format!("{}{path}", ogc::ROOT));
+        let mut described: Vec<String> = described.chain([ogc::ROOT.to_owned()]).collect();
+        let mut answered: Vec<&str> = FEATURES.iter().map(|endpoint| endpoint.0).collect();
         described.sort_unstable();
         answered.sort_unstable();
         assert_eq!(described, answered);

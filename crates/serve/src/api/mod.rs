@@ -55,7 +55,10 @@ fn id(text: &str) -> Result<i64, Problem> {
     id.ok_or_else(|| Problem::not_found(format!("{:?} is no id: ids are whole numbers", shortened(text))))
 }
 
+/// The attribution that the licence of the data requires: <https://www.openstreetmap.org/copyright>.
+pub(super) const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
+
 /// The scope of `safe`. Every answer that says `safe` carries it.
-const SCOPE: &str = "`safe` (certified) holds within the model: the vehicle as defined, steered within its tracking \
+pub(super) const SCOPE: &str = "`safe` (certified) holds within the model: the vehicle as defined, steered within its tracking \
                      tolerance of the planned path, on a road as wide as mapped or else assumed; it is no permit and \
                      says nothing of bridges or traffic.";

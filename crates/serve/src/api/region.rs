@@ -9,14 +9,11 @@ use super::super::options::ServerOptions;
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::super::tiles::{MOST_ZOOM, backdrop};
-use super::{SCOPE, answered, changes};
+use super::{ATTRIBUTION, SCOPE, answered, changes};
 use crate::osm::facts::Policy;
 use crate::rows::Bounds;
 use crate::store::Database;
 use crate::words::Named;
-
-/// The attribution that the licence of the data requires: <https://www.openstreetmap.org/copyright>.
-const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
 
 /// `/api/region`
 pub(in super::super) fn region(
