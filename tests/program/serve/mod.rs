@@ -9,6 +9,7 @@ mod changes;
 mod conditional;
 mod cut_off;
 mod editing;
+mod features;
 pub(crate) mod http;
 mod load;
 mod openapi;
