@@ -275,13 +275,167 @@ fn a_property_of_another_type_is_named_with_its_feature() {
     let error = feature(&|feature| feature["properties"]["type"] = json!(7));
     assert!(error.contains(&format!("feature 1: {}: neither segments nor connectors: type 7;", id(2))), "{error}");
     let error = feature(&|feature| feature["properties"] = Value::Null);
-    assert!(error.contains("the property type is missing;"), "{error}");
+    assert!(
+        error.contains(&format!("feature 1: {}: neither segments nor connectors: the property type is missing, and", id(2))),
+        "{error}"
+    );
     let error = feature(&|feature| feature["geometry"]["coordinates"][0][0] = json!("150"));
     assert!(error.contains("a position of \"150\" and -31.0, which are not two numbers"), "{error}");
     let error = feature(&|feature| feature["properties"]["road"] = json!({"class": "primary"}));
     assert!(error.contains("the property road is of an older schema") && error.contains("September 2024"), "{error}");
     let error = feature(&|feature| *feature = json!("no feature"));
     assert!(error.contains("feature 1: no GeoJSON of features: ") && !error.contains("damaged"), "{error}");
+}
+
+/// Features as `overturemaps download` writes them: without the members that folders of a release have, and without nulls.
+fn downloaded(features: &[Value]) -> Vec<Value> {
+    let mut features = features.to_vec();
+    for feature in &mut features {
+        let properties = feature["properties"].as_object_mut().unwrap();
+        properties.retain(|name, value| !["theme", "type"].contains(&name.as_str()) && !value.is_null());
+    }
+    features
+}
+
+/// Ways, nodes and restrictions as text, and the account without the hash.
+fn content(inputs: &[&Path]) -> (String, Vec<netcert::account::AccountRow>) {
+    let overture::Read { extract, account, .. } = overture::read(inputs, &|_| ()).unwrap();
+    (format!("{:?} {:?} {:?}", extract.ways, extract.refs, extract.restrictions), account.rows())
+}
+
+#[test]
+fn downloads_without_a_type_are_told_apart_by_what_they_have() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    let wanted = content(&[&place.path("release")]);
+    let (segments, connectors) = (downloaded(&segments), downloaded(&connectors));
+    let lines = |features: &[Value], begin: &str| -> String {
+        features.iter().map(|feature| format!("{begin}{feature}\n")).collect()
+    };
+    let both = [&segments[..], &connectors[..]].concat();
+    let place = place
+        .file("segment.geojson", collection(&segments))
+        .file("connector.geojson", collection(&connectors))
+        .file("both.geojson", collection(&both))
+        .file("segment.geojsonseq", lines(&segments, ""))
+        .file("connector.geojsonseq", lines(&connectors, "\u{1e}"))
+        .file("both.geojsonseq", lines(&both, ""));
+    for files in [
+        &["segment.geojson", "connector.geojson"][..],
+        &["both.geojson"],
+        &["segment.geojsonseq", "connector.geojsonseq"],
+        &["both.geojsonseq"],
+        &["segment.geojson", "connector.geojsonseq"],
+    ] {
+        let paths: Vec<_> = files.iter().map(|file| place.path(file)).collect();
+        assert!(paths.iter().all(|path| overture::is_source(path)), "{files:?}");
+        assert_eq!(content(&paths.iter().map(std::path::PathBuf::as_path).collect::<Vec<_>>()), wanted, "{files:?}");
+    }
+    // Other themes have points and lines, too.
+    let mut shop = connectors[0].clone();
+    shop["properties"]["categories"] = json!({"primary": "bakery"});
+    let mut border = segments[0].clone();
+    border["properties"].as_object_mut().unwrap().remove("connectors");
+    for other in [shop, border] {
+        let place = WorkFolder::empty().file("other.geojsonseq", lines(&[other], ""));
+        let error = overture::read(&[&place.path("other.geojsonseq")], &|_| ()).unwrap_err().to_string();
+        assert!(error.contains("other.geojsonseq: feature 0: ") && error.contains("property type is missing"), "{error}");
+    }
+    // A feature that ends in the middle, and something that is none.
+    let text = lines(&segments, "");
+    for cut in [text[..900].to_owned(), text + "}"] {
+        let place = WorkFolder::empty().file("cut.geojsonseq", cut);
+        let error = overture::read(&[&place.path("cut.geojsonseq")], &|_| ()).unwrap_err().to_string();
+        assert!(error.contains("cut.geojsonseq: feature ") && error.contains("damaged or truncated"), "{error}");
+    }
+}
+
+/// A main road of 800 m with these properties: the length of each way in metres, along the road, and its facts.
+fn ways_of_main_road(more: Value) -> Vec<(f64, netcert::osm::facts::WayFacts)> {
+    let road = line(&id(1), &[at(0.0, 0.0), at(800.0, 0.0)], &[(101, 0.0), (102, 1.0)], more);
+    let place = with(&[road], &[point(101, at(0.0, 0.0)), point(102, at(800.0, 0.0))]);
+    let (extract, _) = read(&place.path("release")).unwrap();
+    let east = |node: &NodeId| (f64::from(extract.nodes.place(*node).unwrap().lon_e7) / 1e7 - 150.0) * 95_500.0;
+    let ends = |way: &netcert::osm::Way| {
+        let refs = &extract.refs[way.refs.start as usize..way.refs.end as usize];
+        [east(&refs[0]), east(refs.last().unwrap())]
+    };
+    let mut ways: Vec<_> = extract.ways.iter().map(|way| (ends(way), way.facts.clone())).collect();
+    ways.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+    ways.into_iter().map(|([from, to], facts)| (to - from, facts)).collect()
+}
+
+/// 4 cm of the 800 m: both ends of the rule are one vertex.
+#[test]
+fn what_closes_the_road_over_less_than_a_vertex_s_reach_closes_a_stretch_around_it() {
+    let denied = |between: Value| json!([{"access_type": "denied", "between": between}]);
+    let closed = |facts: &netcert::osm::facts::WayFacts| {
+        facts.legal_forward.motor_vehicle == Permission::No && facts.legal_backward.motor_vehicle == Permission::No
+    };
+    for closing in [
+        json!({"access_restrictions": denied(json!([0.5, 0.50005]))}),
+        json!({"road_flags": [{"values": ["is_under_construction"], "between": [0.5, 0.50005]}]}),
+    ] {
+        let ways = ways_of_main_road(closing);
+        assert_eq!(ways.iter().map(|way| closed(&way.1)).collect::<Vec<_>>(), [false, true, false], "{ways:?}");
+        // 0.15 m before and behind the 0.04 m; positions are on a grid of 1 cm.
+        assert!((ways[1].0 - 0.34).abs() < 0.03 && (ways[0].0 - 399.85).abs() < 0.03, "{ways:?}");
+    }
+    // At either end of the road, where there is a vertex.
+    for (between, expected) in [(json!([0.0, 0.00005]), [true, false]), (json!([0.99995, 1.0]), [false, true])] {
+        let ways = ways_of_main_road(json!({"access_restrictions": denied(between)}));
+        assert_eq!(ways.iter().map(|way| closed(&way.1)).collect::<Vec<_>>(), expected, "{ways:?}");
+    }
+    // A narrow place, too. What opens the road opens no more than it says.
+    let narrow = ways_of_main_road(json!({"width_rules": [{"value": 9.0}, {"value": 2.5, "between": [0.25, 0.25005]}]}));
+    let widths: Vec<_> = narrow.iter().map(|way| way.1.tagged_width_m().unwrap()).collect();
+    assert_eq!(widths, [9.0, 2.5, 9.0]);
+    let opened = json!([{"access_type": "denied"}, {"access_type": "allowed", "between": [0.5, 0.50005]}]);
+    let ways = ways_of_main_road(json!({"access_restrictions": opened}));
+    assert!(ways.iter().all(|way| closed(&way.1)), "{ways:?}");
+    // Limits of lorries and denials of buses are denials, too.
+    let limit = json!([{"access_type": "denied", "between": [0.5, 0.50005], "when": {"vehicle": [
+        {"dimension": "height", "comparison": "greater_than", "value": 3.5, "unit": "m"}]}}]);
+    let ways = ways_of_main_road(json!({"access_restrictions": limit}));
+    assert_eq!(
+        ways.iter().map(|way| way.1.legal_forward.max_height == Limit::At(3.5)).collect::<Vec<_>>(),
+        [false, true, false]
+    );
+}
+
+/// Writers who take types from the rows give a column without a value the type Null.
+#[test]
+fn a_column_that_is_null_throughout_is_empty() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    let Some(()) = parquet(&place, "release", "lake") else { return };
+    let python = python::tables().unwrap();
+    let without = |columns: &[&str]| {
+        let path = "lake/theme=transportation/type=segment/part-00000.zstd.parquet";
+        let script = format!(
+            "import pyarrow as pa, pyarrow.parquet as pq; t = pq.ParquetFile({path:?}).read()\n\
+             for name in {columns:?}: t = t.set_column(t.schema.get_field_index(name), name, pa.nulls(len(t)))\n\
+             pq.write_table(t, 'changed.parquet')"
+        );
+        let done = Command::new(&python).args(["-c", &script]).current_dir(place.path(".")).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let files = [place.path("changed.parquet"), place.path("release/connector.geojson")];
+        overture::read(&[&files[0], &files[1]], &|_| ()).map_err(|error| error.to_string())
+    };
+    let empty = ["access_restrictions", "prohibited_transitions", "road_flags", "subclass", "names", "width_rules"];
+    let read = without(&empty).unwrap();
+    let mut bare = segments.clone();
+    for feature in &mut bare {
+        feature["properties"].as_object_mut().unwrap().retain(|name, _| !empty.contains(&name.as_str()));
+    }
+    let bare = with(&bare, &connectors);
+    let (ways, account) = content(&[&bare.path("release")]);
+    assert_eq!(read.account.rows(), account);
+    assert_eq!(format!("{:?} {:?} {:?}", read.extract.ways, read.extract.refs, read.extract.restrictions), ways);
+    let unclassified = without(&["class"]).unwrap();
+    assert_eq!(count(&unclassified.account, "segment", "left_out", "unknown_class"), 4);
+    let error = without(&["id"]).unwrap_err();
+    assert!(error.contains("changed.parquet: the column id has no values"), "{error}");
 }
 
 /// The same of rows. What Overture's schema has no type for is no condition that can be passed over.

@@ -1,30 +1,43 @@
-//! Which files a source has. Content decides, not names: GeoParquet begins with `PAR1`, GeoJSON with its collection.
+//! Which files a source has. Content decides, not names: GeoParquet begins with `PAR1`, GeoJSON with its collection, a sequence of
+//! GeoJSON with its first feature.
 
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::error::{OvertureError, OvertureProblem};
+use super::geojson::SEPARATOR;
 use crate::folders::files_below;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Parquet,
+    /// One collection of features.
     GeoJson,
+    /// Features one after the other (RFC 8142), with or without the character that separates them.
+    GeoJsonSequence,
 }
+
+/// Bytes of a file that say what it is.
+const HEAD_BYTES: u64 = 1 << 14;
 
 /// The format of a file, if it is one of Overture's.
 fn format(path: &Path) -> std::io::Result<Option<Format>> {
     let mut head = Vec::new();
-    File::open(path)?.take(1024).read_to_end(&mut head)?;
-    let text = String::from_utf8_lossy(&head);
-    Ok(if head.starts_with(b"PAR1") {
-        Some(Format::Parquet)
-    } else if text.trim_start().starts_with('{') && text.contains("\"FeatureCollection\"") {
+    File::open(path)?.take(HEAD_BYTES).read_to_end(&mut head)?;
+    Ok(if head.starts_with(b"PAR1") { Some(Format::Parquet) } else { of_text(&String::from_utf8_lossy(&head)) })
+}
+
+/// The format of a text, by its first characters.
+fn of_text(head: &str) -> Option<Format> {
+    let text = head.trim_start_matches(|c: char| c == SEPARATOR || c.is_whitespace());
+    if !text.starts_with('{') {
+        None
+    } else if text.contains("\"FeatureCollection\"") {
         Some(Format::GeoJson)
     } else {
-        None
-    })
+        text.contains("\"Feature\"").then_some(Format::GeoJsonSequence)
+    }
 }
 
 /// Whether a path is a source for this reader: a folder, or a file of one of the formats.
@@ -86,4 +99,23 @@ fn walk(folder: &Path, files: &mut Vec<(PathBuf, Format)>) -> Result<(), Overtur
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_characters_tell_a_collection_from_a_sequence() {
+        for (head, format) in [
+            ("{\"type\": \"FeatureCollection\", \"features\": [\n", Some(Format::GeoJson)),
+            ("\n {\"id\":\"a\",\"type\":\"Feature\",\"geometry\":{}}\n", Some(Format::GeoJsonSequence)),
+            ("\u{1e}{\"type\":\"Feature\"", Some(Format::GeoJsonSequence)),
+            ("{\"type\":\"Topology\"}", None),
+            ("[{\"type\":\"Feature\"}]", None),
+            ("", None),
+        ] {
+            assert_eq!(of_text(head), format, "{head}");
+        }
+    }
 }

@@ -1,15 +1,34 @@
-//! Features of GeoJSON files, one after the other: `export overture` and `overturemaps download -f geojson` write them.
+//! Features of GeoJSON files, one after the other: a collection, as `export overture` and `overturemaps download -f geojson` write it, or a
+//! sequence (`-f geojsonseq`).
+//!
+//! `overturemaps` writes no `type`, because in a release the folder has it. Such a feature is known by what it has.
 
 use std::fmt;
 use std::fs::File;
-use std::io::BufReader;
-use std::path::Path;
+use std::io::{BufReader, Read};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
 use super::error::{FilePosition, OvertureError, OvertureProblem};
+
+/// Stands before each feature of a sequence, if its writer follows RFC 8142.
+pub(super) const SEPARATOR: char = '\u{1e}';
+
+/// What a connector may have, besides its id and its place. What has more is something else.
+const OF_CONNECTORS: [&str; 6] = ["id", "bbox", "sources", "theme", "type", "version"];
+
+/// What only segments have. Two of them are those of a schema before September 2024, which [`super::record::Segment`] refuses by name.
+const OF_SEGMENTS: [&str; 3] = ["connectors", "connector_ids", "road"];
+
+/// What a feature is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FeatureKind {
+    Segment,
+    Connector,
+}
 
 /// A feature.
 #[derive(Deserialize)]
@@ -23,24 +42,42 @@ pub(super) struct Feature {
 }
 
 impl Feature {
-    /// `segment` or `connector`.
-    pub(super) fn kind(&self) -> &str {
-        self.properties.get("type").and_then(Value::as_str).unwrap_or_default()
+    /// What it is, by the property `type`, or by content where there is none.
+    ///
+    /// # Errors
+    /// It is neither a segment nor a connector.
+    pub(super) fn kind(&self) -> Result<FeatureKind, OvertureProblem> {
+        let kind = match self.properties.get("type").filter(|kind| !kind.is_null()) {
+            Some(Value::String(kind)) if kind == "segment" => Some(FeatureKind::Segment),
+            Some(Value::String(kind)) if kind == "connector" => Some(FeatureKind::Connector),
+            Some(other) => return Err(OvertureProblem::OtherFeatures(format!("type {other}"))),
+            None => self.kind_by_content(),
+        };
+        let missing =
+            "the property type is missing, and it is neither a line with connectors nor a point without other properties";
+        kind.ok_or_else(|| OvertureProblem::OtherFeatures(missing.to_owned()))
     }
 
-    /// The same for messages, whatever stands there.
-    pub(super) fn kind_as_written(&self) -> String {
-        self.properties
-            .get("type")
-            .map_or_else(|| "the property type is missing".to_owned(), |kind| format!("type {kind}"))
+    fn kind_by_content(&self) -> Option<FeatureKind> {
+        let properties = self.properties.as_object()?;
+        let has = |name: &&str| properties.get(*name).is_some_and(|value| !value.is_null());
+        match self.geometry.get("type").and_then(Value::as_str)? {
+            "LineString" => OF_SEGMENTS.iter().any(has).then_some(FeatureKind::Segment),
+            "Point" => {
+                let others = properties.iter().any(|(name, value)| !value.is_null() && !OF_CONNECTORS.contains(&&**name));
+                (!others).then_some(FeatureKind::Connector)
+            }
+            _ => None,
+        }
     }
 
-    /// The id.
+    /// The id. Some writers keep it among the properties.
     ///
     /// # Errors
     /// It is missing or no text.
     pub(super) fn id(&self) -> Result<String, OvertureProblem> {
-        match &self.id {
+        let id = if self.id.is_null() { self.properties.get("id").unwrap_or(&Value::Null) } else { &self.id };
+        match id {
             Value::String(id) => Ok(id.clone()),
             Value::Null => Err(OvertureProblem::Value("a feature without id".to_owned())),
             other => {
@@ -50,15 +87,21 @@ impl Feature {
     }
 }
 
+/// What becomes of a feature: nothing, or an error with its id.
+type Taken = Result<(), (Option<String>, OvertureProblem)>;
+
 /// Calls `take` for each feature of a file.
-pub(super) fn each(
-    path: &Path,
-    take: &mut dyn FnMut(Feature) -> Result<(), (Option<String>, OvertureProblem)>,
-) -> Result<(), OvertureError> {
-    let file = File::open(path).map_err(|e| OvertureError::of_file(path, e))?;
+pub(super) fn each(file: &DrawnFile, take: &mut dyn FnMut(Feature) -> Taken) -> Result<(), OvertureError> {
+    let path = &*file.path;
+    let open = File::open(path).map_err(|e| OvertureError::of_file(path, e))?;
+    let text = BufReader::with_capacity(1 << 16, open);
     let mut walk = Walk { take, number: 0, failed: None };
-    let mut json = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
-    let done = (&mut walk).deserialize(&mut json).and_then(|()| json.end());
+    let done = if file.sequence {
+        walk.sequence(text)
+    } else {
+        let mut json = serde_json::Deserializer::from_reader(text);
+        (&mut walk).deserialize(&mut json).and_then(|()| json.end())
+    };
     let (number, failed) = (walk.number, walk.failed);
     let at = |position, (id, problem)| OvertureError { path: path.to_owned(), position, id, problem };
     match (done, failed) {
@@ -75,10 +118,51 @@ pub(super) fn each(
     }
 }
 
+/// A GeoJSON file.
+pub(super) struct DrawnFile {
+    pub(super) path: PathBuf,
+    /// Whether it is a sequence of features, and no collection.
+    pub(super) sequence: bool,
+}
+
 struct Walk<'t> {
-    take: &'t mut dyn FnMut(Feature) -> Result<(), (Option<String>, OvertureProblem)>,
+    take: &'t mut dyn FnMut(Feature) -> Taken,
     number: usize,
     failed: Option<(Option<String>, OvertureProblem)>,
+}
+
+impl Walk<'_> {
+    /// Takes a feature. An error of `take` is kept, and ends the reading.
+    fn feature<E: serde::de::Error>(&mut self, feature: Feature) -> Result<(), E> {
+        if let Err(failed) = (self.take)(feature) {
+            self.failed = Some(failed);
+            return Err(E::custom("a feature"));
+        }
+        self.number += 1;
+        Ok(())
+    }
+
+    /// Takes the features of a sequence. A feature may have several lines.
+    fn sequence(&mut self, text: impl Read) -> serde_json::Result<()> {
+        let features = serde_json::Deserializer::from_reader(Unseparated(text)).into_iter::<Feature>();
+        for feature in features {
+            self.feature(feature?)?;
+        }
+        Ok(())
+    }
+}
+
+/// A text whose separators are blanks. In JSON that character stands nowhere else: in texts it is written as an escape.
+struct Unseparated<R>(R);
+
+impl<R: Read> Read for Unseparated<R> {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        let length = self.0.read(out)?;
+        for byte in out.iter_mut().take(length).filter(|byte| **byte == SEPARATOR as u8) {
+            *byte = b' ';
+        }
+        Ok(length)
+    }
 }
 
 impl<'de> DeserializeSeed<'de> for &mut Walk<'_> {
@@ -127,11 +211,7 @@ impl<'de> Visitor<'de> for Features<'_, '_> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut features: A) -> Result<(), A::Error> {
         while let Some(feature) = features.next_element::<Feature>()? {
-            if let Err(failed) = (self.0.take)(feature) {
-                self.0.failed = Some(failed);
-                return Err(serde::de::Error::custom("a feature"));
-            }
-            self.0.number += 1;
+            self.0.feature(feature)?;
         }
         Ok(())
     }

@@ -25,7 +25,7 @@ mod rules;
 mod segment;
 mod turns;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 pub use account::Account;
 pub use error::{FilePosition, OvertureError, OvertureProblem};
@@ -35,6 +35,7 @@ use crate::osm::Extract;
 use crate::rows::SegmentRow;
 use connectors::Connectors;
 use files::Format;
+use geojson::{DrawnFile, FeatureKind};
 use ids::FeatureKey;
 use parquet::{Kind, ParquetTable};
 use segment::{RoadSegment, SegmentFeature};
@@ -61,8 +62,11 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
     for (path, _) in files.iter().filter(|(_, format)| *format == Format::Parquet) {
         tables.push(ParquetTable::open(path)?);
     }
-    let drawn: Vec<&PathBuf> =
-        files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
+    let drawn = files.iter().filter(|(_, format)| *format != Format::Parquet).map(|(path, format)| {
+        let sequence = *format == Format::GeoJsonSequence;
+        DrawnFile { path: path.clone(), sequence }
+    });
+    let drawn: Vec<DrawnFile> = drawn.collect();
 
     progress("connectors");
     let connectors = read_connectors(&tables, &drawn, first)?;
@@ -81,7 +85,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
 }
 
 /// The connectors of all files. Fails if there are no connectors or no segments, of which `first` is told.
-fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[&PathBuf], first: &Path) -> Result<Connectors, OvertureError> {
+fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[DrawnFile], first: &Path) -> Result<Connectors, OvertureError> {
     let mut connectors = Connectors::default();
     let (mut of_connectors, mut of_segments) = (false, false);
     for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {
@@ -93,15 +97,14 @@ fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[&PathBuf], first: &Path
         })?;
         groups.into_iter().for_each(|some| connectors.add(some));
     }
-    for path in drawn {
-        geojson::each(path, &mut |feature| {
-            match feature.kind() {
-                "connector" => of_connectors = true,
-                "segment" => {
+    for file in drawn {
+        geojson::each(file, &mut |feature| {
+            match feature.kind().map_err(|problem| (feature.id().ok(), problem))? {
+                FeatureKind::Connector => of_connectors = true,
+                FeatureKind::Segment => {
                     of_segments = true;
                     return Ok(());
                 }
-                _ => return Err((feature.id().ok(), OvertureProblem::OtherFeatures(feature.kind_as_written()))),
             }
             let (id, place) = id_and(feature, |feature| geometry::of_json(&feature.geometry, "Point"))?;
             connectors.add(place.first().map(|place| (FeatureKey::connector(&id), *place)).into_iter().collect());
@@ -121,7 +124,7 @@ fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[&PathBuf], first: &Path
 /// The roads of all segments. What becomes of each segment is added to the account.
 fn read_roads(
     tables: &[ParquetTable<'_>],
-    drawn: &[&PathBuf],
+    drawn: &[DrawnFile],
     connectors: &Connectors,
     account: &mut Account,
 ) -> Result<Vec<RoadSegment>, OvertureError> {
@@ -142,9 +145,9 @@ fn read_roads(
             account.add(&of_road);
         }
     }
-    for path in drawn {
-        geojson::each(path, &mut |feature| {
-            if feature.kind() != "segment" {
+    for file in drawn {
+        geojson::each(file, &mut |feature| {
+            if feature.kind().map_err(|problem| (feature.id().ok(), problem))? != FeatureKind::Segment {
                 return Ok(());
             }
             let (id, (places, segment)) = id_and(feature, |feature| {

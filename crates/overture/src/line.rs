@@ -8,7 +8,7 @@ use super::ids::FeatureKey;
 use crate::osm::{LonLat, NodeId};
 
 /// A place this near to a vertex is that vertex, metres. A vertex beside it would bend the line.
-const SNAP_M: f64 = 0.1;
+pub(super) const SNAP_M: f64 = 0.1;
 /// A connector this far from its place on the line is not on it, metres.
 const OFF_LINE_M: f64 = 0.5;
 
@@ -45,6 +45,12 @@ impl Line {
     pub(super) fn share(&self, vertex: usize) -> f64 {
         let whole_m = self.along_m.last().copied().unwrap_or_default();
         self.along_m.get(vertex).map_or(0.0, |m| if whole_m > 0.0 { m / whole_m } else { 0.0 })
+    }
+
+    /// The share of a length in metres; 1 if the line is no longer.
+    pub(super) fn share_of(&self, length_m: f64) -> f64 {
+        let whole_m = self.along_m.last().copied().unwrap_or_default();
+        if whole_m > length_m { length_m / whole_m } else { 1.0 }
     }
 
     /// The vertex at a share, which is added if none is near.

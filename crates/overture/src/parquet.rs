@@ -170,7 +170,12 @@ fn columns(schema: &Type) -> Result<(Kind, Type), OvertureProblem> {
     if let Some(missing) = wanted.iter().take(needed).find(|name| !has(name)) {
         return Err(OvertureProblem::Schema(format!("the column {missing} is missing")));
     }
-    let used: Vec<Arc<Type>> = fields.iter().filter(|field| wanted.contains(&field.name())).cloned().collect();
+    // Both must be in every row.
+    if let Some(empty) = fields.iter().find(|field| CONNECTOR.contains(&field.name()) && is_null(field)) {
+        return Err(OvertureProblem::Schema(format!("the column {} has no values", empty.name())));
+    }
+    let used = fields.iter().filter(|field| wanted.contains(&field.name()) && !is_null(field));
+    let used: Vec<Arc<Type>> = used.cloned().collect();
     for field in &used {
         let (right, expected) = match field.name() {
             "id" | "class" | "subtype" | "subclass" => (is_text(field), "text"),
@@ -195,6 +200,11 @@ fn type_name(field: &Type) -> String {
         (Some(logical), _) => format!("{logical:?}"),
         (None, false) => field.get_physical_type().to_string(),
     }
+}
+
+/// Whether a column has the type of those that have nothing but nulls. Writers who take the types from the rows give it to them.
+fn is_null(field: &Type) -> bool {
+    field.get_basic_info().logical_type_ref() == Some(&LogicalType::Unknown)
 }
 
 fn is_text(field: &Type) -> bool {

@@ -4,7 +4,7 @@ use super::account::{Account, CONNECTOR, RULE, SEGMENT};
 use super::connectors::Connectors;
 use super::error::OvertureProblem;
 use super::ids::FeatureKey;
-use super::line::Line;
+use super::line::{Line, SNAP_M};
 use super::record::{Segment, Transition};
 use super::rules::SegmentRules;
 use crate::osm::facts::{Notes, RoadClass, WayFacts, given_class};
@@ -21,6 +21,10 @@ const MINOR_SERVICE: &str = "minor_service";
 const TRACK: &str = "track";
 /// Noted: a stretch of a road that is left out like such a way.
 const MINOR_STRETCH: &str = "minor_service";
+
+/// What closes the road over less than a vertex's reach holds on so much more before and behind it, metres. Then its ends are two vertices:
+/// they are farther apart than twice that reach.
+const WIDER_M: f64 = SNAP_M + 0.05;
 
 /// A segment that is a road for heavy vehicles.
 #[derive(Debug)]
@@ -54,7 +58,7 @@ impl RoadSegment {
     ) -> Result<Option<Self>, OvertureProblem> {
         let SegmentFeature { id, places, mut segment } = feature;
         let mut of_rules = Account::default();
-        let rules = SegmentRules::of(&segment, &mut of_rules);
+        let mut rules = SegmentRules::of(&segment, &mut of_rules);
         let (class, mut line) =
             match class(&segment, &rules).and_then(|class| Ok((class, Line::new(places).ok_or(TOO_FEW_PLACES)?))) {
                 Ok(both) => both,
@@ -86,11 +90,16 @@ impl RoadSegment {
                 account.noted(CONNECTOR, "off_its_line", 1);
             }
         }
-        let shares = rules.changes();
-        for share in &shares {
-            line.vertex_at(*share);
+        let margin = line.share_of(WIDER_M);
+        loop {
+            for share in rules.changes() {
+                line.vertex_at(share);
+            }
+            if !rules.widen_short(|share| line.vertex_at(share), margin) {
+                break;
+            }
         }
-        let mut changes: Vec<usize> = shares.iter().map(|share| line.vertex_at(*share)).collect();
+        let mut changes: Vec<usize> = rules.changes().into_iter().map(|share| line.vertex_at(share)).collect();
         changes.retain(|vertex| (1..line.places.len() - 1).contains(vertex));
         changes.dedup();
         let mut bounds = vec![0];

@@ -158,6 +158,22 @@ impl SegmentRules {
         }
     }
 
+    /// Widens the ranges of what closes or narrows the road where both ends of a range are one vertex: such a rule would hold nowhere. Both ends
+    /// move by the share `margin`. `vertex_at` is the vertex of a share. Returns whether a range was widened.
+    pub(super) fn widen_short(&mut self, mut vertex_at: impl FnMut(f64) -> usize, margin: f64) -> bool {
+        let access = self.access.iter_mut().chain(&mut self.buses);
+        let closing = access.filter(|(_, effect)| !matches!(effect, Effect::Allow { .. })).map(|(range, _)| range);
+        let widths = self.widths.iter_mut().map(|(range, _)| range);
+        let mut widened = false;
+        for range in closing.chain(widths).chain(&mut self.closed) {
+            if vertex_at(range[0]) == vertex_at(range[1]) {
+                *range = [(range[0] - margin).max(0.0), (range[1] + margin).min(1.0)];
+                widened = true;
+            }
+        }
+        widened
+    }
+
     /// The shares at which facts may change, ascending and distinct.
     pub(super) fn changes(&self) -> Vec<f64> {
         let ranges = self.access.iter().chain(&self.buses).map(|rule| rule.0);
