@@ -22,6 +22,7 @@ CREATE TABLE verdict (
     reason TEXT
 );
 
+-- `replication_timestamp` is a text: extracts give whole seconds, and GDAL warns of a DATETIME without thousandths.
 CREATE TABLE run (
     run_id INTEGER PRIMARY KEY,
     command TEXT NOT NULL,
@@ -29,8 +30,8 @@ CREATE TABLE run (
     input_blake3 TEXT,
     replication_timestamp TEXT,
     netcert_version TEXT NOT NULL,
-    started TEXT NOT NULL,
-    finished TEXT NOT NULL,
+    started DATETIME NOT NULL,
+    finished DATETIME NOT NULL,
     parameters TEXT NOT NULL -- JSON
 );
 

@@ -228,6 +228,65 @@ fn the_page_names_every_column_and_its_ranges_hold() {
     assert!(checked > 10_000, "{checked} values");
 }
 
+/// A column's description in the database, with the values of its constraint: the ends of a range, or words.
+#[derive(Debug, Default)]
+struct DescribedColumn {
+    description: Option<String>,
+    ranges: Vec<(f64, bool, f64)>,
+    words: BTreeSet<String>,
+}
+
+/// The descriptions of all columns that the database has.
+async fn descriptions(place: &WorkFolder) -> BTreeMap<Name, DescribedColumn> {
+    let mut c = SqliteConnection::connect(place.path("demo.gpkg").to_str().unwrap()).await.unwrap();
+    let sql = "SELECT table_name, column_name, d.description, value, CAST(min AS REAL), min_is_inclusive, CAST(max AS REAL) \
+               FROM gpkg_data_columns AS d LEFT JOIN gpkg_data_column_constraints USING (constraint_name)";
+    let mut all = BTreeMap::<Name, DescribedColumn>::new();
+    for row in sqlx::query(sql).fetch_all(&mut c).await.unwrap() {
+        let table: String = row.get(0);
+        let shown = if table.starts_with("permit_") { "permit_…".to_owned() } else { table };
+        let column = all.entry((shown, row.get(1))).or_default();
+        column.description = row.get(2);
+        column.words.extend(row.get::<Option<String>, _>(3));
+        let ends = row.get::<Option<f64>, _>(4).zip(row.get::<Option<f64>, _>(6));
+        column.ranges.extend(ends.map(|(low, high)| (low, row.get::<bool, _>(5), high)));
+    }
+    c.close().await.unwrap();
+    all
+}
+
+/// The extension gpkg_schema of the database says what the page says.
+#[test]
+fn descriptions_in_the_database_are_those_of_the_page() {
+    let place = WorkFolder::with_demo();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    let (rules, found) = (page(), runtime.block_on(descriptions(&place)));
+    let tables: BTreeSet<&str> = found.keys().map(|name| name.0.as_str()).collect();
+    let listed = ["account", "certificate", "edge", "junction", "permit", "permit_…", "run", "turn", "turn_certificate", "vehicle"];
+    assert_eq!(tables, BTreeSet::from(listed));
+    let mut ranges = 0;
+    for (name, rule) in rules.iter().filter(|(name, _)| tables.contains(name.0.as_str())) {
+        let none = DescribedColumn::default();
+        let described = found.get(name).unwrap_or(&none);
+        match &rule.range {
+            &Range::Number { low, above, high, .. } if low.is_finite() => {
+                ranges += 1;
+                // Every layer of permits has the same.
+                assert!(!described.ranges.is_empty(), "{name:?}: {described:?}");
+                assert!(described.ranges.iter().all(|range| *range == (low, !above, high)), "{name:?}: {described:?}");
+            }
+            Range::Words(words) => assert_eq!(described.words, words.iter().cloned().collect(), "{name:?}"),
+            _ => assert!(described.ranges.is_empty() && described.words.is_empty(), "{name:?}: {described:?}"),
+        }
+        // The unit is the third cell of the page.
+        if name.1.ends_with("_m") {
+            let words = described.description.as_deref().unwrap_or_default();
+            assert!(words.ends_with("Unit: m"), "{name:?}: {words}");
+        }
+    }
+    assert!(ranges > 60, "{ranges}");
+}
+
 #[test]
 fn a_range_lets_nothing_else_pass() {
     for (range, yes, no) in [

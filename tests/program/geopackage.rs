@@ -363,6 +363,121 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     assert!(std::fs::read(&path).unwrap() == before);
 }
 
+// --- what columns mean ----------------------------------------------------------------------------------------------
+
+#[test]
+fn columns_of_layers_and_tables_are_described_and_descriptions_go_with_their_layer() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let edges = build(&path, 50, |i, _| i).edges.len() as u32;
+    let extensions = "SELECT table_name, scope FROM gpkg_extensions WHERE extension_name = 'gpkg_schema' ORDER BY 1";
+    assert_eq!(sqlite(&path, extensions), "gpkg_data_column_constraints|read-write\ngpkg_data_columns|read-write\n");
+    let of = |table: &str, column: &str| {
+        let sql = "SELECT d.description, constraint_type, min, min_is_inclusive, max, max_is_inclusive FROM gpkg_data_columns AS d \
+                   JOIN gpkg_data_column_constraints USING (constraint_name)";
+        sqlite(&path, &format!("{sql} WHERE table_name = '{table}' AND column_name = '{column}'"))
+    };
+    let width = "width of the vehicle's own lane. Unit: m|range|0|0|Inf|0\n";
+    assert_eq!(of("edge", "lane_width_m"), width);
+    let rsc = "the Route Safety Certificate of what is safe: the least room between any point of any unit and the corridor's \
+               edges, with all errors deducted. Unit: m|range|0|1|1000|1\n";
+    assert_eq!(of("permit_eu_semi16_5", "rsc_m"), rsc);
+    assert_eq!(of("permit_eu_semi16_5_2", "rsc_m"), of("permit_eu_semi16_5", "rsc_m"));
+    let words = "SELECT group_concat(value, ' ') FROM (SELECT value FROM gpkg_data_columns \
+                 JOIN gpkg_data_column_constraints USING (constraint_name) \
+                 WHERE table_name = 'certificate' AND column_name = 'verdict' AND constraint_type = 'enum' ORDER BY value)";
+    assert_eq!(sqlite(&path, words), "forbidden safe unknown unsafe\n");
+    // No turns and no measurements, so nothing is said of them; and only columns that are there are described.
+    let tables = "SELECT group_concat(name, ' ') FROM (SELECT DISTINCT table_name AS name FROM gpkg_data_columns ORDER BY 1)";
+    let all = "account certificate edge permit permit_eu_semi16_5 permit_eu_semi16_5_2 permit_eu_semi16_5_direction run \
+               turn_certificate vehicle\n";
+    assert_eq!(sqlite(&path, tables), all);
+    let missing = "SELECT table_name, column_name FROM gpkg_data_columns AS d \
+                   WHERE column_name NOT IN (SELECT name FROM pragma_table_xinfo(d.table_name))";
+    assert_eq!(sqlite(&path, missing), "");
+    let times = "SELECT name, type FROM pragma_table_info('run') WHERE name IN ('started', 'finished')";
+    assert_eq!(sqlite(&path, times), "started|DATETIME\nfinished|DATETIME\n");
+
+    let longer = VehicleRecord { definition: r#"{"units":[1]}"#.into(), ..vehicle("EU-SEMI16.5") };
+    let settings = Settings { policy: Policy::Carriageway, ..Settings::default() };
+    let unknown = (0..edges).map(|edge| EdgeCertificate::bare(EdgeNo::new(edge), Verdict::Unknown(UnknownReason::Cut)));
+    let mut database = Database::open_to_change(&path).unwrap();
+    database.replace_certificates(&longer, &settings, unknown, Vec::new(), None, &run(), &[]).unwrap();
+    database.close().unwrap();
+    let layers = "SELECT count(DISTINCT table_name) FROM gpkg_data_columns WHERE table_name LIKE 'permit\\_%' ESCAPE '\\'";
+    assert_eq!(sqlite(&path, layers), "2\n");
+    let layer = "permit_eu_semi16_5_carriageway";
+    assert_eq!(of(layer, "rsc_m"), of("permit_eu_semi16_5_2", "rsc_m"));
+    assert_eq!(of("permit_eu_semi16_5", "rsc_m"), "");
+    whole(&path);
+    if Command::new("ogrinfo").arg("--version").output().is_err() {
+        return skipped("ogrinfo", "Debian: gdal-bin");
+    }
+    let ogrinfo = |arguments: &[&str]| {
+        let out = Command::new("ogrinfo").arg("-ro").args(arguments).output().unwrap();
+        assert!(out.status.success() && out.stderr.is_empty(), "{}", String::from_utf8_lossy(&out.stderr));
+        String::from_utf8(out.stdout).unwrap()
+    };
+    let file = path.to_str().unwrap();
+    let domain = ogrinfo(&["-fielddomain", "netcert_edge_lane_width_m", file]);
+    assert!(domain.contains("Type: range") && domain.contains("Minimum value: 0 (excluded)"), "{domain}");
+    assert!(!domain.contains("Maximum value"), "{domain}");
+    assert!(ogrinfo(&["-so", file, "edge"]).contains("domain name=netcert_edge_lane_width_m"));
+    let runs = ogrinfo(&[file, "run"]);
+    assert!(runs.contains("started (DateTime) = 2026/11/21 08:00:00+00"), "{runs}");
+}
+
+/// Makes of a database what netcert 0.2 would have written.
+fn as_written_by_0_2(path: &Path) {
+    let older = "024a446caa8ca653238391c071472373aada44000423663e3c4ae907261485b1466b06ab656f44f23f11c4b3d30aed64";
+    sqlite(
+        path,
+        &format!(
+            "DROP TABLE gpkg_data_columns; DROP TABLE gpkg_data_column_constraints; \
+             DELETE FROM gpkg_extensions WHERE extension_name = 'gpkg_schema'; \
+             DELETE FROM _sqlx_migrations WHERE version = 16; \
+             UPDATE _sqlx_migrations SET checksum = x'{older}' WHERE version = 3; \
+             ALTER TABLE run RENAME TO newer; \
+             CREATE TABLE run (run_id INTEGER PRIMARY KEY, command TEXT NOT NULL, input_name TEXT NOT NULL, \
+             input_blake3 TEXT, replication_timestamp TEXT, netcert_version TEXT NOT NULL, started TEXT NOT NULL, \
+             finished TEXT NOT NULL, parameters TEXT NOT NULL); \
+             INSERT INTO run SELECT * FROM newer; DROP TABLE newer; \
+             PRAGMA writable_schema = ON; \
+             UPDATE sqlite_schema SET sql = replace(replace(sql, '\"newer\"', 'run'), 'newer', 'run'); \
+             PRAGMA writable_schema = RESET;"
+        ),
+    );
+    let types = "SELECT group_concat(type, ' ') FROM pragma_table_info('run') WHERE name IN ('started', 'finished')";
+    assert_eq!(sqlite(path, types), "TEXT TEXT\n");
+    whole(path);
+}
+
+#[test]
+fn a_database_of_netcert_0_2_has_the_same_rows_and_takes_new_ones() {
+    let folder = folder();
+    let (newer, older) = (folder.path().join("newer.gpkg"), folder.path().join("older.gpkg"));
+    let edges = build(&newer, 50, |i, _| i).edges.len() as u32;
+    std::fs::copy(&newer, &older).unwrap();
+    as_written_by_0_2(&older);
+    let options = QueryOptions::new("EU-SEMI16.5", Policy::Lane);
+    assert_eq!(all(&older, &options), all(&newer, &options));
+    let mut database = Database::open_to_change(&older).unwrap();
+    assert_eq!(database.runs().unwrap(), [(run(), account())]);
+    let rows = (0..edges).map(|edge| certificate(edge, 9));
+    database.replace_certificates(&vehicle("x"), &Settings::default(), rows, Vec::new(), None, &run(), &[]).unwrap();
+    assert_eq!(database.runs().unwrap().len(), 2);
+    assert_eq!(database.certified().unwrap().len(), 4);
+    database.close().unwrap();
+    whole(&older);
+    assert_eq!(sqlite(&older, "SELECT count(*) FROM sqlite_schema WHERE name LIKE 'gpkg_data%'"), "0\n");
+    // No other text of a migration serves.
+    sqlite(&older, "UPDATE _sqlx_migrations SET checksum = x'00' WHERE version = 3");
+    let error = Database::open(&older).err().unwrap().to_string();
+    assert!(error.contains("version 3 differs"), "{error}");
+    sqlite(&newer, "DELETE FROM _sqlx_migrations WHERE version = 15");
+    assert!(matches!(Database::open(&newer), Err(StoreError::Older { .. })));
+}
+
 // --- wrong files ----------------------------------------------------------------------------------------------------
 
 #[test]

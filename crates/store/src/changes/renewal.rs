@@ -16,6 +16,7 @@ use crate::columns::set_no::SetNo;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::bulk::Bulk;
+use crate::layers::descriptions;
 use crate::provenance::records::{self, Run};
 use crate::register::evidence::{self, Register};
 use crate::results::compact::CompactCertificate;
@@ -121,8 +122,8 @@ async fn write(c: &mut SqliteConnection, renewal: &mut Renewal<'_>, packed: &[Pa
     }
     replace_sets(c, sets, packed).await?;
     records::add_run(c, run, account).await?;
-    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(c).await?;
-    Ok(())
+    sqlx::query("UPDATE gpkg_contents SET last_change = ?").bind(&run.finished).execute(&mut *c).await?;
+    descriptions::describe(c).await
 }
 
 /// Replaces some certificates of some sets, with their plans.

@@ -12,7 +12,7 @@ use crate::columns::set_no::SetNo;
 use crate::database::Database;
 use crate::database::register_state::RegisterState;
 use crate::error::{StoreError, content};
-use crate::layers::contents;
+use crate::layers::{contents, descriptions};
 use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::results::compact::CompactCertificate;
 use crate::results::complete::check_complete;
@@ -135,10 +135,8 @@ async fn replace(
     let inserted = set.insert(c, rows, renewed.rows.len() as u32).await?;
     inserted.map_err(|(edge, detail)| content(format!("edge {edge}: {detail}")))?;
     contents::touch_tables(c, &run.finished).await?;
-    match &mut renewed.turns {
-        Some((turns, packed)) => {
-            turns::insert_set(c, SetNo { vehicle_no, policy }, run_id, turns, packed, &run.finished).await
-        }
-        None => Ok(()),
+    if let Some((turns, packed)) = &mut renewed.turns {
+        turns::insert_set(c, SetNo { vehicle_no, policy }, run_id, turns, packed, &run.finished).await?;
     }
+    descriptions::describe(c).await
 }

@@ -15,7 +15,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
 use crate::database::register_state::RegisterState;
 use crate::error::StoreError;
 use crate::file::companions::with_suffix;
-use crate::file::schema::MIGRATIONS;
+use crate::file::schema;
 use crate::file::session::Session;
 
 /// An open database. All calls block, so asynchronous code must call them from a blocking task.
@@ -81,7 +81,7 @@ impl Database {
         Ok(database)
     }
 
-    /// Checks that the schema is the one that this program writes.
+    /// Checks that the schema is the one that this program writes, or an earlier one that serves as well.
     fn check_schema(&mut self) -> Result<(), StoreError> {
         let path = self.session.path.clone();
         let applied = self.session.run(async |c| {
@@ -93,19 +93,14 @@ impl Database {
             sqlx::query_as::<_, (i64, Vec<u8>)>(applied).fetch_all(c).await.map(Some)
         })?;
         let Some(applied) = applied else { return Err(StoreError::NotNetcert(path)) };
-        let known = MIGRATIONS.iter().map(|m| m.version).max().unwrap_or(0);
+        let known = schema::MIGRATIONS.iter().map(|m| m.version).max().unwrap_or(0);
         if let Some(&(found, _)) = applied.last().filter(|row| row.0 > known) {
             return Err(StoreError::Newer { path, found, known });
         }
-        for migration in MIGRATIONS.iter() {
-            let detail = match applied.iter().find(|row| row.0 == migration.version) {
-                Some((_, checksum)) if checksum[..] == migration.checksum[..] => continue,
-                Some(_) => format!("version {} differs", migration.version),
-                None => format!("version {} is missing", migration.version),
-            };
-            return Err(StoreError::Older { path, detail });
+        match schema::fault(&applied) {
+            Some(detail) => Err(StoreError::Older { path, detail }),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The file's path.

@@ -24,7 +24,31 @@ const FILES: &[(i64, &str, &str)] = &[
     (13, "segments", include_str!("../../../../migrations/0013_segments.sql")),
     (14, "backdrop", include_str!("../../../../migrations/0014_backdrop.sql")),
     (15, "signatures", include_str!("../../../../migrations/0015_signatures.sql")),
+    (16, "column descriptions", include_str!("../../../../migrations/0016_column_descriptions.sql")),
 ];
+
+/// The first migration that a database may lack: what is missing then is for other programs only.
+const DISPENSABLE_FROM: i64 = 16;
+
+/// Hashes of earlier texts of migrations, as sqlx makes them (SHA-384): the database is the same to this program.
+/// 3 of netcert 0.2: times of runs had the type TEXT.
+const EARLIER_TEXTS: &[(i64, &str)] =
+    &[(3, "024a446caa8ca653238391c071472373aada44000423663e3c4ae907261485b1466b06ab656f44f23f11c4b3d30aed64")];
+
+/// What is wrong with the migrations of a database, by version and hash. `None`: this program can use it.
+pub(crate) fn fault(applied: &[(i64, Vec<u8>)]) -> Option<String> {
+    MIGRATIONS.iter().find_map(|migration| {
+        let version = migration.version;
+        match applied.iter().find(|row| row.0 == version) {
+            Some((_, hash)) if hash[..] == migration.checksum[..] => None,
+            Some((_, hash)) => {
+                let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+                (!EARLIER_TEXTS.contains(&(version, &*hash))).then(|| format!("version {version} differs"))
+            }
+            None => (version < DISPENSABLE_FROM).then(|| format!("version {version} is missing")),
+        }
+    })
+}
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know
 /// (BIGINT, TIMESTAMP), and GDAL would warn of them at every listing.

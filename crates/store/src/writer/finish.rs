@@ -10,6 +10,7 @@ use crate::file::companions::with_suffix;
 use crate::file::schema::migrate;
 use crate::file::session::Session;
 use crate::layers::contents::{self, LayerTable};
+use crate::layers::descriptions;
 use crate::layers::styles::{self, Shows};
 use crate::provenance::records::{self, Run, VehicleRecord};
 use crate::register::evidence;
@@ -80,7 +81,12 @@ impl Writer {
             let finishing = FinishTurns { session: &mut session, path: &self.part.path, vehicles: &self.vehicles };
             finishing.run(turns, run, run_id)?;
         }
-        session.run(async |c| contents::add_tables(c, &run.finished).await)?;
+        session.run(async |c| {
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            contents::add_tables(c, &run.finished).await?;
+            descriptions::describe(c).await?;
+            sqlx::query("COMMIT").execute(c).await
+        })?;
         put_in_place(session, self.part, self.older.as_ref())
     }
 
