@@ -1,23 +1,26 @@
 """Permits of all vehicles as one data set of GeoParquet files, which DuckDB, SedonaDB, GeoPandas and Spark filter by place without reading it all.
 
-    FOLDER/netcert.json                                            what the permits depend on
-    FOLDER/edges/cell=8-134-87/vehicle_id=EU-SEMI16.5/lane.parquet  edges that begin in a cell, with verdicts for a vehicle
-    FOLDER/turns/cell=…/vehicle_id=…/lane.parquet                   turns, where they are certified
+    FOLDER/netcert.json                                                     what the permits depend on
+    FOLDER/SHA256SUMS                                                       hashes of all other files, for `sha256sum -c`
+    FOLDER/edges/cell=z8-x134-y87/certified_set=lane-EU-SEMI16.5/part.parquet  edges that begin in a cell, with verdicts for a vehicle
+    FOLDER/turns/cell=…/certified_set=…/part.parquet                        turns, where they are certified
 
-Cells are tiles as maps on the web have them: zoom, column, row. Within a file rows follow a Z-shaped curve, so groups of rows have small boxes.
+Cells are tiles as maps on the web have them: zoom, column, row. A set is a corridor policy and a vehicle. Names of folders begin with a letter, and never read as a number or a date:
+DuckDB and Polars take `cell=6-10-22` for a day, and most readers take a vehicle called `1234` for a number. Within a file rows follow a Z-shaped curve, so groups of rows have small boxes.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import errors
+from . import _netcert, errors
 from .table import pandas_type
 
 if TYPE_CHECKING:
@@ -29,16 +32,26 @@ if TYPE_CHECKING:
 
 # Zoom of the order of rows: a cell of it is 40 m wide at the equator.
 _FINE = 20
-# Rows of a group. Readers skip whole groups; smaller ones have more bounds to read.
-_GROUP_ROWS = 8192
+# Rows of a group, as in exports. Readers skip whole groups; smaller ones have more bounds to read.
+_GROUP_ROWS = 2048
+# The form of the folder. 1 had `cell=8-134-87/vehicle_id=…/lane.parquet`.
+_LAYOUT = 2
+_LICENCE = "© OpenStreetMap contributors, ODbL 1.0"
 _SCOPE = (
     "permitted means that the verdict is safe: within the stated model, widths and error bounds. It is no permit to drive and says "
     "nothing of bridges or traffic. Whole routes are not certified; an engine that joins edges and turns joins what is safe by itself."
 )
 
 
-def write(region: Region, folder: str | os.PathLike[str], vehicles: list[str] | None, zoom: int) -> None:
+GeoParquet = Literal["1.1", "2.0"]
+
+
+def write(
+    region: Region, folder: str | os.PathLike[str], vehicles: list[str] | None, zoom: int, geoparquet: GeoParquet
+) -> None:
     """Writes the data set. The folder is complete or absent; an older data set in it is replaced."""
+    if geoparquet not in ("1.1", "2.0"):
+        raise ValueError(f"geoparquet: {geoparquet}; expected 1.1 or 2.0")
     if not 0 <= zoom <= 16:
         raise ValueError(f"zoom: {zoom}; expected 0 to 16")
     sets = [known for known in region.sets() if vehicles is None or known.vehicle_id in vehicles]
@@ -54,12 +67,13 @@ def write(region: Region, folder: str | os.PathLike[str], vehicles: list[str] | 
     shutil.rmtree(part, ignore_errors=True)
     try:
         for known in sets:
-            _layer(region.edges(known.vehicle_id, corridor=known.corridor), part / "edges", known, zoom)
+            _layer(region.edges(known.vehicle_id, corridor=known.corridor), part / "edges", known, zoom, geoparquet)
             if known.turns:
-                _layer(region.turns(known.vehicle_id, corridor=known.corridor), part / "turns", known, zoom)
-        about = {"database": Path(region.path).name, "zoom": zoom, "scope": _SCOPE, "sets": [vars(known) for known in sets]}
+                _layer(region.turns(known.vehicle_id, corridor=known.corridor), part / "turns", known, zoom, geoparquet)
         part.mkdir(parents=True, exist_ok=True)
-        (part / "netcert.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+        about = _about(region, sets, zoom, geoparquet)
+        (part / "netcert.json").write_text(json.dumps(about, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        _write_hashes(part)
         old = target.with_name(target.name + ".old")
         shutil.rmtree(old, ignore_errors=True)
         if target.exists():
@@ -70,7 +84,62 @@ def write(region: Region, folder: str | os.PathLike[str], vehicles: list[str] | 
         shutil.rmtree(part, ignore_errors=True)
 
 
-def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int) -> None:
+def cell_name(zoom: int, column: int, row: int) -> str:
+    """The name of a tile, as in folders.
+
+    >>> import netcert.dataset
+    >>> netcert.dataset.cell_name(8, 134, 87)
+    'z8-x134-y87'
+    """
+    return f"z{zoom}-x{column}-y{row}"
+
+
+def set_name(corridor: str, vehicle_id: str) -> str:
+    """The name of a set, as in folders.
+
+    >>> import netcert.dataset
+    >>> netcert.dataset.set_name("lane", "EU-SEMI16.5")
+    'lane-EU-SEMI16.5'
+    """
+    return f"{corridor}-{vehicle_id}"
+
+
+def _about(region: Region, sets: list[CertifiedSet], zoom: int, geoparquet: GeoParquet) -> dict[str, Any]:
+    """What the permits depend on."""
+    first = sets[0]
+    origin = region._file.origin(first.vehicle_id, first.corridor)
+    vehicles = {known.vehicle_id: region.vehicle(known.vehicle_id).to_dict() for known in sets}
+    return {
+        "layout": _LAYOUT,
+        "netcert": _netcert.__version__,
+        "geoparquet": geoparquet,
+        "scope": _SCOPE,
+        "licence": _LICENCE,
+        "database": {"name": Path(region.path).name, "sha256": _sha256(Path(region.path))},
+        "input": {"name": origin["input_name"], "blake3": origin["input_blake3"], "timestamp": origin["replication_timestamp"]},
+        "made_by": {"netcert": origin["netcert_version"]},
+        "zoom": zoom,
+        "sets": [{"certified_set": set_name(known.corridor, known.vehicle_id), **vars(known)} for known in sets],
+        "vehicles": vehicles,
+    }
+
+
+def _sha256(path: Path) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def _write_hashes(folder: Path) -> None:
+    """Writes the hash of every file below a folder, in the form of `sha256sum`."""
+    files = sorted(file for file in folder.rglob("*") if file.is_file())
+    lines = [f"{_sha256(file)}  {file.relative_to(folder).as_posix()}\n" for file in files]
+    (folder / "SHA256SUMS").write_text("".join(lines), encoding="utf-8")
+
+
+def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int, geoparquet: GeoParquet) -> None:
     import geopandas
     import pandas
     import pyarrow
@@ -84,21 +153,22 @@ def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int) -> None:
     if len(cells) == 0:
         return
     permitted = pyarrow.compute.equal(table["verdict"], "safe")
-    table = table.append_column("permitted", permitted).drop_columns(["vehicle_id"])
+    table = table.append_column("permitted", permitted)
     # Rows of a cell follow each other, because the curve stays in a cell until all of it is done.
     begins = np.flatnonzero(np.any(np.diff(cells, axis=0) != 0, axis=1)) + 1
     for begin, end in zip([0, *begins], [*begins, len(cells)], strict=True):
         column, row = cells[begin]
-        place = folder / f"cell={zoom}-{column}-{row}" / f"vehicle_id={known.vehicle_id}"
+        set_folder = f"certified_set={set_name(known.corridor, known.vehicle_id)}"
+        place = folder / f"cell={cell_name(zoom, column, row)}" / set_folder
         place.mkdir(parents=True, exist_ok=True)
         # Types that do not depend on the values, so that a column without a number is of the same type in every file.
         rows_here = table.take(pyarrow.array(order[begin:end]))
         mapper = {"types_mapper": lambda kind: pandas_type(kind) or pandas.ArrowDtype(kind)}
         some = geopandas.GeoDataFrame.from_arrow(rows_here, to_pandas_kwargs=mapper)
         some.to_parquet(
-            place / f"{known.corridor}.parquet",
+            place / "part.parquet",
             index=False,
-            schema_version="1.1.0",
+            schema_version=f"{geoparquet}.0",
             write_covering_bbox=True,
             row_group_size=_GROUP_ROWS,
             compression="zstd",

@@ -186,12 +186,18 @@ class Region:
         return self._file.verify(list(vehicles), corridor, bbox, sample, source)
 
     def to_dataset(
-        self, folder: str | os.PathLike[str], *, vehicles: Sequence[str] | None = None, zoom: int = 8
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        vehicles: Sequence[str] | None = None,
+        zoom: int = 8,
+        geoparquet: Literal["1.1", "2.0"] = "1.1",
     ) -> None:
-        """Writes the permits of all vehicles as one data set of GeoParquet files, by cell and vehicle (see `netcert.dataset`).
+        """Writes the permits of all vehicles as one data set of GeoParquet files, by cell and set (see `netcert.dataset`).
 
-        vehicles  ids of the vehicles [default: all that are certified]
-        zoom      zoom of the tiles that divide it; 8 has tiles of some 100 km
+        vehicles    ids of the vehicles [default: all that are certified]
+        zoom        zoom of the tiles that divide it; 8 has tiles of some 100 km
+        geoparquet  version of the format; 2.0 has lines in Parquet's own type, and needs GeoPandas 1.2 or later here and a new program there
 
         The folder is complete or absent. Needs GeoPandas.
 
@@ -199,7 +205,7 @@ class Region:
         """
         from .dataset import write
 
-        write(self, folder, None if vehicles is None else list(vehicles), zoom)
+        write(self, folder, None if vehicles is None else list(vehicles), zoom, geoparquet)
 
     def __repr__(self) -> str:
         return f"<Region {self.path}>"

@@ -235,7 +235,7 @@ class Routes:
         import pandas
 
         features = self.to_geojson()["features"]
-        frame = geopandas.GeoDataFrame.from_features(features, crs="OGC:CRS84")
+        frame = geopandas.GeoDataFrame.from_features(features, crs="EPSG:4326")
         for name in frame.columns.drop("geometry"):
             values = [feature["properties"].get(name) for feature in features]
             # A column with gaps has become one of doubles. A truth value is no number.

@@ -29,7 +29,7 @@ class Table:
 
     Every package that reads Arrow's C stream interface takes a table as it is and copies nothing: `pyarrow.table(t)`,
     `polars.DataFrame(t)`, `duckdb.from_arrow(t)`. `docs/columns.md` describes the columns. Where rows have a place, the column
-    `geometry` holds lines of longitudes and latitudes (GeoArrow, OGC:CRS84).
+    `geometry` holds lines of longitudes and latitudes (GeoArrow, EPSG:4326 with longitude first).
     """
 
     def __init__(self, rows: RowBatches) -> None:
@@ -74,7 +74,7 @@ class Table:
         return frame
 
     def to_geopandas(self) -> geopandas.GeoDataFrame:
-        """The rows as a GeoDataFrame in OGC:CRS84 (longitude, latitude). Columns have the types of `to_pandas`."""
+        """The rows as a GeoDataFrame in EPSG:4326, longitude first. Columns have the types of `to_pandas`."""
         import geopandas
 
         if "geometry" not in self.column_names:

@@ -85,6 +85,19 @@ impl RegionFile {
         sets.iter().map(set).collect()
     }
 
+    /// What a set of certificates was made from, as a dict: name, BLAKE3 hash and time stamp of the extract, and the version that read it.
+    fn origin<'py>(&self, py: Python<'py>, vehicle_id: &str, corridor: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
+        let policy = self.policy(py, corridor)?;
+        let origin = work::run(py, |_| self.region().origin(vehicle_id, policy, None))?;
+        let origin = origin.map_err(|e| error::of_region(&e))?;
+        let known = PyDict::new(py);
+        known.set_item("input_name", origin.input_name)?;
+        known.set_item("input_blake3", origin.input_blake3)?;
+        known.set_item("replication_timestamp", origin.replication_timestamp)?;
+        known.set_item("netcert_version", origin.netcert_version)?;
+        Ok(known)
+    }
+
     /// The corridor policy that counts where none is named: that of the `ingest`.
     fn usual_corridor(&self, py: Python<'_>) -> PyResult<&'static str> {
         Ok(self.policy(py, None)?.name())

@@ -102,11 +102,11 @@ fn vertex() -> Arc<Field> {
     Arc::new(Field::new("vertices", DataType::FixedSizeList(coordinate(), 2), false))
 }
 
-/// The column `geometry`: longitudes and latitudes in degrees.
+/// The column `geometry`: longitudes and latitudes in degrees, under the name of the reference system that all exports have.
 fn geometry() -> Field {
     let known = [
         ("ARROW:extension:name", "geoarrow.linestring"),
-        ("ARROW:extension:metadata", r#"{"crs":"OGC:CRS84","crs_type":"authority_code"}"#),
+        ("ARROW:extension:metadata", r#"{"crs":"EPSG:4326","crs_type":"authority_code"}"#),
     ];
     let known: HashMap<_, _> = known.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
     Field::new("geometry", DataType::List(vertex()), false).with_metadata(known)

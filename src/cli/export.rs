@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use netcert::export::formats::{self, Layer, Options, TARGETS};
+use netcert::export::formats::{self, GeoParquetVersion, Layer, Options, TARGETS};
 use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
 use netcert::osm::facts::WidthSource;
 use netcert::store::Database;
@@ -51,6 +51,9 @@ pub(crate) struct Export {
     /// Write only this layer, as one file, where the target writes both layers.
     #[arg(long, value_name = "LAYER", value_parser = layer())]
     layer: Option<Layer>,
+    /// The version of GeoParquet, for the target geoparquet [default: 1.1]. In 2.0 lines have Parquet's own type GEOMETRY.
+    #[arg(long, value_name = "VERSION", value_parser = geoparquet_version())]
+    geoparquet: Option<GeoParquetVersion>,
     /// Permit only edges and turns with at least this RSC: the metres to spare at the tightest place.
     #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
     min_rsc: f64,
@@ -75,6 +78,12 @@ fn layer() -> impl TypedValueParser<Value = Layer> {
     PossibleValuesParser::new(["edges", "turns"]).map(|name| if name == "turns" { Layer::Turns } else { Layer::Edges })
 }
 
+fn geoparquet_version() -> impl TypedValueParser<Value = GeoParquetVersion> {
+    let named = |name: String| GeoParquetVersion::ALL.iter().copied().find(|version| version.name() == name);
+    PossibleValuesParser::new(GeoParquetVersion::ALL.iter().map(|version| version.name()))
+        .try_map(move |name| named(name).ok_or("no such version"))
+}
+
 impl Export {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let target = formats::named(self.target).ok_or_else(|| anyhow::anyhow!("{}: no such target", self.target))?;
@@ -85,6 +94,11 @@ impl Export {
             }
         }
         formats::check_reference(target, self.relative.relative_to.as_deref())?;
+        anyhow::ensure!(
+            self.geoparquet.is_none() || target.name() == "geoparquet",
+            "{}: --geoparquet is for the target geoparquet; leave it out",
+            target.name()
+        );
         self.relative.check(&path, &self.vehicle.id, self.policy.corridor)?;
         let source = self.source(session, &path)?;
         let to_stream = self.out.as_os_str() == "-";
@@ -92,7 +106,8 @@ impl Export {
         let unfinished = Unfinished::default();
         let on_disk = unfinished.clone();
         when_stopped(|| on_disk.remove());
-        match export::export(&source, target, &Options { layer: self.layer }, out, unfinished) {
+        let options = Options { layer: self.layer, geoparquet: self.geoparquet.unwrap_or_default() };
+        match export::export(&source, target, &options, out, unfinished) {
             // Kept as an I/O error: `main` then recognises a closed pipe, which is no failure.
             Err(ExportError::Write(error)) => return Err(error.into()),
             done => done?,

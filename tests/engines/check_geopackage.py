@@ -99,11 +99,14 @@ def systems():
 def ids():
     """Ids with gaps come through pandas with every digit."""
     for name, columns in {"edges": ["edge_id"], "turns": ["turn_id", "first_arc", "last_arc"]}.items():
+        key = columns[0]
         with open(f"{EXPORTS}/csv/{name}.csv", newline="", encoding="utf-8") as text:
-            rows = list(csv.DictReader(text))
+            rows = sorted(csv.DictReader(text), key=lambda row: int(row[key]))
         path = f"{EXPORTS}/geoparquet/{name}.parquet"
         typed = dict.fromkeys(columns, "Int64")
         for frame in (pandas.read_parquet(path), geopandas.read_parquet(path), pandas.read_csv(f"{EXPORTS}/csv/{name}.csv", dtype=typed)):
+            # GeoParquet has the rows along a curve.
+            frame = frame.sort_values(key)
             for column in columns:
                 check(str(frame[column].dtype) == "Int64", name, column, frame[column].dtype)
                 texts = ["" if value is pandas.NA else str(value) for value in frame[column]]

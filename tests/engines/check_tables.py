@@ -1,8 +1,9 @@
-"""Whether edges.parquet, turns.parquet and the FlatGeobuf and GeoJSON files of an export say what its CSV files say.
+"""Whether edges.parquet and turns.parquet of an export say what its CSV files say.
 
-    check_tables.py PARQUET_FOLDER CSV_FOLDER
+    check_tables.py PARQUET_FOLDER CSV_FOLDER [GEOPARQUET_VERSION]
 
-Reads the Parquet files by DuckDB and by pyarrow, each by its own code. Prints one line a layer; stops at the first difference.
+Reads the Parquet files by DuckDB and by pyarrow, each by its own code. CSV is in the order of the network, Parquet in that of a curve. Prints
+one line a layer; stops at the first difference.
 """
 
 import csv
@@ -14,6 +15,7 @@ import duckdb
 import pyarrow.parquet as parquet
 
 # https://geoparquet.org/releases/v1.1.0/schema.json, what concerns these files.
+VERSION = sys.argv[3] if len(sys.argv) > 3 else "1.1"
 GEO_REQUIRED = {"version", "primary_column", "columns"}
 
 
@@ -47,7 +49,7 @@ def metadata(path):
     file = parquet.ParquetFile(path)
     pairs = file.metadata.metadata
     geo, header = json.loads(pairs[b"geo"]), json.loads(pairs[b"netcert"])
-    check(GEO_REQUIRED <= geo.keys() and geo["version"] == "1.1.0", "geo:", geo)
+    check(GEO_REQUIRED <= geo.keys() and geo["version"] == f"{VERSION}.0", "geo:", geo)
     column = geo["columns"][geo["primary_column"]]
     check(column["encoding"] == "WKB" and column["geometry_types"] == ["LineString"], "geo:", column)
     covering = column["covering"]["bbox"]
@@ -61,14 +63,19 @@ def layer(name, tables, plain):
     file, around = metadata(path)
     duck = duckdb.connect().execute(f"select * exclude (geometry, bbox) from read_parquet('{path}')")
     columns = [column[0] for column in duck.description]
+    key = columns.index({"edges": "edge_id", "turns": "turn_id"}[name])
     with open(f"{plain}/{name}.csv", newline="", encoding="utf-8") as text:
         rows = csv.reader(text)
         check(next(rows) == columns, "columns:", columns)
-        count = 0
-        for cells, texts in zip(iter(duck.fetchone, None), rows, strict=True):
-            for cell, text, column in zip(cells, texts, columns, strict=True):
-                check(same(cell, text), f"{name} row {count} {column}: {cell!r}, csv {text!r}")
-            count += 1
+        texts_of = {texts[key]: texts for texts in rows}
+    count = 0
+    for cells in iter(duck.fetchone, None):
+        texts = texts_of.pop(str(cells[key]), None)
+        check(texts is not None, f"{name}: {cells[key]} is not in csv, or twice in Parquet")
+        for cell, text, column in zip(cells, texts, columns, strict=True):
+            check(same(cell, text), f"{name} row {count} {column}: {cell!r}, csv {text!r}")
+        count += 1
+    check(not texts_of, f"{name}: {len(texts_of)} rows are in csv alone")
     wide = [180.0, 90.0, -180.0, -90.0]
     arrow = file.read(["geometry", "bbox"]).to_pylist()
     for row in arrow:
@@ -77,6 +84,11 @@ def layer(name, tables, plain):
         check(list(row["bbox"].values()) == sides, "bbox:", row["bbox"], sides)
         wide = [min(wide[0], sides[0]), min(wide[1], sides[1]), max(wide[2], sides[2]), max(wide[3], sides[3])]
     check(len(arrow) == count == file.metadata.num_rows and wide == around, "bbox of all:", around, wide)
+    for group in map(file.metadata.row_group, range(file.metadata.num_row_groups)):
+        check(group.num_rows <= 2048, "a group of", group.num_rows)
+        check({group.column(i).compression for i in range(group.num_columns)} == {"ZSTD"}, "not compressed with zstd")
+    logical = file.schema.column(len(columns)).logical_type
+    check((logical.type == "GEOMETRY") == (VERSION == "2.0"), "the type of lines:", logical)
     print(f"{name}: {count} rows, {len(columns)} columns, {file.metadata.num_row_groups} groups of rows")
 
 

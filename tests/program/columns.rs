@@ -262,7 +262,18 @@ fn descriptions_in_the_database_are_those_of_the_page() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     let (rules, found) = (page(), runtime.block_on(descriptions(&place)));
     let tables: BTreeSet<&str> = found.keys().map(|name| name.0.as_str()).collect();
-    let listed = ["account", "certificate", "edge", "junction", "permit", "permit_…", "run", "turn", "turn_certificate", "vehicle"];
+    let listed = [
+        "account",
+        "certificate",
+        "edge",
+        "junction",
+        "permit",
+        "permit_…",
+        "run",
+        "turn",
+        "turn_certificate",
+        "vehicle",
+    ];
     assert_eq!(tables, BTreeSet::from(listed));
     let mut ranges = 0;
     for (name, rule) in rules.iter().filter(|(name, _)| tables.contains(name.0.as_str())) {

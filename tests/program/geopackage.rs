@@ -388,7 +388,8 @@ fn columns_of_layers_and_tables_are_described_and_descriptions_go_with_their_lay
                  WHERE table_name = 'certificate' AND column_name = 'verdict' AND constraint_type = 'enum' ORDER BY value)";
     assert_eq!(sqlite(&path, words), "forbidden safe unknown unsafe\n");
     // No turns and no measurements, so nothing is said of them; and only columns that are there are described.
-    let tables = "SELECT group_concat(name, ' ') FROM (SELECT DISTINCT table_name AS name FROM gpkg_data_columns ORDER BY 1)";
+    let tables =
+        "SELECT group_concat(name, ' ') FROM (SELECT DISTINCT table_name AS name FROM gpkg_data_columns ORDER BY 1)";
     let all = "account certificate edge permit permit_eu_semi16_5 permit_eu_semi16_5_2 permit_eu_semi16_5_direction run \
                turn_certificate vehicle\n";
     assert_eq!(sqlite(&path, tables), all);
@@ -404,7 +405,8 @@ fn columns_of_layers_and_tables_are_described_and_descriptions_go_with_their_lay
     let mut database = Database::open_to_change(&path).unwrap();
     database.replace_certificates(&longer, &settings, unknown, Vec::new(), None, &run(), &[]).unwrap();
     database.close().unwrap();
-    let layers = "SELECT count(DISTINCT table_name) FROM gpkg_data_columns WHERE table_name LIKE 'permit\\_%' ESCAPE '\\'";
+    let layers =
+        "SELECT count(DISTINCT table_name) FROM gpkg_data_columns WHERE table_name LIKE 'permit\\_%' ESCAPE '\\'";
     assert_eq!(sqlite(&path, layers), "2\n");
     let layer = "permit_eu_semi16_5_carriageway";
     assert_eq!(of(layer, "rsc_m"), of("permit_eu_semi16_5_2", "rsc_m"));

@@ -276,7 +276,10 @@ fn a_property_of_another_type_is_named_with_its_feature() {
     assert!(error.contains(&format!("feature 1: {}: neither segments nor connectors: type 7;", id(2))), "{error}");
     let error = feature(&|feature| feature["properties"] = Value::Null);
     assert!(
-        error.contains(&format!("feature 1: {}: neither segments nor connectors: the property type is missing, and", id(2))),
+        error.contains(&format!(
+            "feature 1: {}: neither segments nor connectors: the property type is missing, and",
+            id(2)
+        )),
         "{error}"
     );
     let error = feature(&|feature| feature["geometry"]["coordinates"][0][0] = json!("150"));
@@ -339,7 +342,10 @@ fn downloads_without_a_type_are_told_apart_by_what_they_have() {
     for other in [shop, border] {
         let place = WorkFolder::empty().file("other.geojsonseq", lines(&[other], ""));
         let error = overture::read(&[&place.path("other.geojsonseq")], &|_| ()).unwrap_err().to_string();
-        assert!(error.contains("other.geojsonseq: feature 0: ") && error.contains("property type is missing"), "{error}");
+        assert!(
+            error.contains("other.geojsonseq: feature 0: ") && error.contains("property type is missing"),
+            "{error}"
+        );
     }
     // A feature that ends in the middle, and something that is none.
     let text = lines(&segments, "");
@@ -387,7 +393,8 @@ fn what_closes_the_road_over_less_than_a_vertex_s_reach_closes_a_stretch_around_
         assert_eq!(ways.iter().map(|way| closed(&way.1)).collect::<Vec<_>>(), expected, "{ways:?}");
     }
     // A narrow place, too. What opens the road opens no more than it says.
-    let narrow = ways_of_main_road(json!({"width_rules": [{"value": 9.0}, {"value": 2.5, "between": [0.25, 0.25005]}]}));
+    let narrow =
+        ways_of_main_road(json!({"width_rules": [{"value": 9.0}, {"value": 2.5, "between": [0.25, 0.25005]}]}));
     let widths: Vec<_> = narrow.iter().map(|way| way.1.tagged_width_m().unwrap()).collect();
     assert_eq!(widths, [9.0, 2.5, 9.0]);
     let opened = json!([{"access_type": "denied"}, {"access_type": "allowed", "between": [0.5, 0.50005]}]);

@@ -53,8 +53,7 @@ impl Feature {
             Some(other) => return Err(OvertureProblem::OtherFeatures(format!("type {other}"))),
             None => self.kind_by_content(),
         };
-        let missing =
-            "the property type is missing, and it is neither a line with connectors nor a point without other properties";
+        let missing = "the property type is missing, and it is neither a line with connectors nor a point without other properties";
         kind.ok_or_else(|| OvertureProblem::OtherFeatures(missing.to_owned()))
     }
 
@@ -64,7 +63,8 @@ impl Feature {
         match self.geometry.get("type").and_then(Value::as_str)? {
             "LineString" => OF_SEGMENTS.iter().any(has).then_some(FeatureKind::Segment),
             "Point" => {
-                let others = properties.iter().any(|(name, value)| !value.is_null() && !OF_CONNECTORS.contains(&&**name));
+                let others =
+                    properties.iter().any(|(name, value)| !value.is_null() && !OF_CONNECTORS.contains(&&**name));
                 (!others).then_some(FeatureKind::Connector)
             }
             _ => None,

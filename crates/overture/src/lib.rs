@@ -85,7 +85,11 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
 }
 
 /// The connectors of all files. Fails if there are no connectors or no segments, of which `first` is told.
-fn read_connectors(tables: &[ParquetTable<'_>], drawn: &[DrawnFile], first: &Path) -> Result<Connectors, OvertureError> {
+fn read_connectors(
+    tables: &[ParquetTable<'_>],
+    drawn: &[DrawnFile],
+    first: &Path,
+) -> Result<Connectors, OvertureError> {
     let mut connectors = Connectors::default();
     let (mut of_connectors, mut of_segments) = (false, false);
     for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {

@@ -33,6 +33,7 @@ pub(super) struct Table<'t> {
     /// The columns, in the order of [`Row::cells`].
     pub(super) columns: Vec<Column>,
     pub(super) source: &'t Source<'t>,
+    pub(super) options: &'t Options,
     /// For temporary files.
     pub(super) destination: &'t Destination,
 }
@@ -67,7 +68,7 @@ impl<F: LayerFormat> Target for LayerFiles<F> {
     fn write(&self, source: &Source<'_>, options: &Options, destination: &mut Destination) -> Result<(), ExportError> {
         for layer in asked(options) {
             let sink = destination.create(&format!("{}.{}", layer.name(), F::ENDING))?;
-            let table = Table { layer, columns: layer.columns(source), source, destination };
+            let table = Table { layer, columns: layer.columns(source), source, options, destination };
             let mut file = F::open(&table, sink)?;
             layer.each(source, |row| file.row(&table, row))?;
             file.close(&table)?;

@@ -8,6 +8,7 @@
 mod closures;
 mod columns;
 mod csv;
+mod curve;
 mod flatgeobuf;
 mod geojson;
 mod geoparquet;
@@ -31,6 +32,32 @@ pub use columns::{EDGE_COLUMNS, TURN_COLUMNS, edge_cells, turn_cells};
 pub struct Options {
     /// Write only this layer, as one file, if the target writes both layers.
     pub layer: Option<Layer>,
+    /// The version of GeoParquet, if the target is `geoparquet`.
+    pub geoparquet: GeoParquetVersion,
+}
+
+/// A version of GeoParquet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GeoParquetVersion {
+    /// 1.1: lines are bytes. Programs of all ages read it.
+    #[default]
+    V1_1,
+    /// 2.0: lines have Parquet's own type GEOMETRY, which older programs refuse.
+    V2_0,
+}
+
+impl GeoParquetVersion {
+    /// All versions.
+    pub const ALL: &[Self] = &[Self::V1_1, Self::V2_0];
+
+    /// The version as people write it, such as `1.1`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::V1_1 => "1.1",
+            Self::V2_0 => "2.0",
+        }
+    }
 }
 
 /// A layer of rows.

@@ -62,7 +62,11 @@ fn described(line: &'static str) -> Vec<ColumnDescription> {
         let (description, constraint) = (description.clone(), constraint.clone());
         ColumnDescription { table, column, description, constraint }
     };
-    tables.into_iter().flat_map(|table| quoted(columns).map(move |column| (table, column))).map(|(t, c)| of(t, c)).collect()
+    tables
+        .into_iter()
+        .flat_map(|table| quoted(columns).map(move |column| (table, column)))
+        .map(|(t, c)| of(t, c))
+        .collect()
 }
 
 /// Names in backquotes.
@@ -118,7 +122,8 @@ impl ColumnRange {
 /// Describes the columns of all layers and tables that are listed and have no descriptions yet, and forgets those that are gone. A database of
 /// netcert 0.2 has no place for descriptions, and stays as it is.
 pub(crate) async fn describe(c: &mut SqliteConnection) -> Sql<()> {
-    let there = "SELECT count(*) FROM sqlite_schema WHERE name IN ('gpkg_data_columns', 'gpkg_data_column_constraints')";
+    let there =
+        "SELECT count(*) FROM sqlite_schema WHERE name IN ('gpkg_data_columns', 'gpkg_data_column_constraints')";
     if sqlx::query_scalar::<_, i64>(there).fetch_one(&mut *c).await? < 2 {
         return Ok(());
     }
@@ -211,7 +216,10 @@ mod tests {
         assert_eq!(of("edge", "name").constraint, None);
         let way = "the way in OpenStreetMap, or the number of a segment (Overture)";
         assert_eq!(of("edge", "way_id").description.as_deref(), Some(way));
-        assert_eq!(of("turn_certificate", "need_flare_m").constraint.as_ref().unwrap().0, "netcert_turn_certificate_need_flare_m");
+        assert_eq!(
+            of("turn_certificate", "need_flare_m").constraint.as_ref().unwrap().0,
+            "netcert_turn_certificate_need_flare_m"
+        );
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 
 use serde::{Deserialize, Serialize};
 
+use crate::formats::curve::hilbert;
 use crate::rows::Bounds;
 use crate::scratch::Scratch;
 use crate::sorter::{Sorted, Sorter};
@@ -180,21 +181,9 @@ fn along_curve(around: Bounds, bounds: Bounds) -> u32 {
         let share = if to > from { (0.5 * (low + high) - from) / (to - from) } else { 0.0 };
         (LAST * share) as u32
     };
-    let mut x = cell(around.west, around.east, bounds.west, bounds.east);
-    let mut y = cell(around.south, around.north, bounds.south, bounds.north);
-    let mut along = 0_u32;
-    for bit in (0..16).rev() {
-        let (right, up) = (x >> bit & 1, y >> bit & 1);
-        // The quarters are visited in the order (0, 0), (0, 1), (1, 1), (1, 0); the first and last are rotated.
-        along = along << 2 | ((3 * right) ^ up);
-        if up == 0 {
-            if right == 1 {
-                (x, y) = (!x, !y);
-            }
-            (x, y) = (y, x);
-        }
-    }
-    along
+    let x = cell(around.west, around.east, bounds.west, bounds.east);
+    let y = cell(around.south, around.north, bounds.south, bounds.north);
+    hilbert(x, y, 16) as u32
 }
 
 #[cfg(test)]

@@ -3,11 +3,13 @@
 use serde_json::{Map, Value, json};
 
 use super::SIDES;
+use crate::formats::GeoParquetVersion;
 use crate::rows::Bounds;
 use crate::rows::{Column, ColumnKind};
 
-/// The member `geo` of <https://geoparquet.org/releases/v1.1.0/>: lines in the column `geometry`, their boxes in `bbox`.
-pub(super) fn geo(bounds: Option<Bounds>) -> String {
+/// The member `geo` of <https://geoparquet.org/releases/v1.1.0/>: lines in the column `geometry`, their boxes in `bbox`. Version 2.0 does not
+/// list `covering` and allows it.
+pub(super) fn geo(version: GeoParquetVersion, bounds: Option<Bounds>) -> String {
     let covering: Map<_, _> = SIDES.iter().map(|&side| (side.to_owned(), json!(["bbox", side]))).collect();
     let mut column = json!({
         "encoding": "WKB",
@@ -19,12 +21,13 @@ pub(super) fn geo(bounds: Option<Bounds>) -> String {
     if let (Some(b), Some(members)) = (bounds, column.as_object_mut()) {
         members.insert("bbox".to_owned(), json!([b.west, b.south, b.east, b.north]));
     }
-    json!({"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
+    let version = format!("{}.0", version.name());
+    json!({"version": version, "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
 }
 
 /// EPSG:4326 as PROJJSON. Every other format of this program names the same system, so that tables can be joined. Its axes are
 /// latitude and longitude, but coordinates in WKB are always x and y, longitude first (GeoParquet 1.1, "Coordinate axis order").
-fn epsg_4326() -> Value {
+pub(super) fn epsg_4326() -> Value {
     json!({
         "$schema": "https://proj.org/schemas/v0.7/projjson.schema.json",
         "type": "GeographicCRS",

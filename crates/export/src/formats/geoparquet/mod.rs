@@ -1,35 +1,85 @@
-//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>), one file per layer: lines as WKB, a column of boxes with which
+//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>) or 2.0, one file per layer: lines as WKB, a column of boxes with which
 //! readers can skip rows, and the header as JSON under the key `netcert` of the file's metadata.
 //!
-//! Memory holds one group of rows at a time.
+//! Rows follow a Hilbert curve, so that a group of rows covers a small part of the region and a reader of a box skips most groups. They are
+//! sorted outside memory, which holds one group of rows at a time.
 
 mod metadata;
+mod sorted;
 
 use std::io::Write as _;
 use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-use parquet::schema::types::Type;
+use parquet::schema::types::{ColumnPath, Type};
 
+use super::GeoParquetVersion;
+use super::curve;
 use super::layer_files::{LayerFormat, Table};
 use super::layers::Row;
 use crate::osm::LonLat;
-use crate::rows::{self, Bounds, Cell, ColumnKind};
+use crate::rows::{Bounds, Cell, ColumnKind};
+use crate::sorter::Sorter;
 use crate::{ExportError, Sink};
+use sorted::OwnedRow;
 
-/// Rows per group. A group of edges takes some 8 MB.
-const GROUP_ROWS: usize = 1 << 14;
+/// Rows per group, some 1 MB of edges. Readers skip whole groups; smaller ones need more bounds, which every reader reads.
+const GROUP_ROWS: usize = 1 << 11;
+
+/// Zstandard's own default.
+const ZSTD_LEVEL: i32 = 3;
 
 /// The sides of the box, in the order of its columns.
 const SIDES: [&str; 4] = ["xmin", "ymin", "xmax", "ymax"];
 
+/// The column of lines.
+const GEOMETRY: &str = "geometry";
+
 /// `geoparquet`
 pub(super) struct GeoParquet {
+    file: GroupedFile,
+    /// By place along the curve and number in the network.
+    rows: Sorter<(u64, u64), OwnedRow>,
+    count: u64,
+}
+
+impl LayerFormat for GeoParquet {
+    const NAME: &'static str = "geoparquet";
+    const ABOUT: &'static str = "edges and turns with all certificate columns, as GeoParquet 1.1 or 2.0";
+    const ENDING: &'static str = "parquet";
+
+    fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
+        let rows = Sorter::new(table.destination.scratch(".rows")?);
+        Ok(Self { file: GroupedFile::open(table, sink)?, rows, count: 0 })
+    }
+
+    fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
+        self.rows.push((curve::of_line(row.line), self.count), &OwnedRow::of(row))?;
+        self.count += 1;
+        Ok(())
+    }
+
+    fn close(self, table: &Table<'_>) -> Result<(), ExportError> {
+        let Self { mut file, rows, count } = self;
+        let reporter = table.source.reporter;
+        reporter.begin("rows", count);
+        for (done, row) in (0_u64..).zip(rows.sorted()?) {
+            if done.is_multiple_of(4096) {
+                reporter.advance(done);
+            }
+            file.add(&row?.1)?;
+        }
+        file.close(table)
+    }
+}
+
+/// A file that is written group by group.
+struct GroupedFile {
     writer: SerializedFileWriter<Vec<u8>>,
     sink: Sink,
     group: Vec<Column>,
@@ -38,26 +88,18 @@ pub(super) struct GeoParquet {
     bounds: Option<Bounds>,
 }
 
-impl LayerFormat for GeoParquet {
-    const NAME: &'static str = "geoparquet";
-    const ABOUT: &'static str = "edges and turns with all certificate columns, as GeoParquet 1.1";
-    const ENDING: &'static str = "parquet";
-
+impl GroupedFile {
     fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
-        let schema = schema(table.layer.name(), &table.columns).map_err(failed)?;
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::SNAPPY)
-            .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())
-            .build();
-        let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties));
+        let schema = schema(table).map_err(failed)?;
+        let properties = properties().map_err(failed)?;
+        let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties)).map_err(failed)?;
         let group = table.columns.iter().map(|column| Column::of(column.1)).collect();
-        let (lines, boxes) = (Vec::new(), Default::default());
-        Ok(Self { writer: writer.map_err(failed)?, sink, group, lines, boxes, bounds: None })
+        Ok(Self { writer, sink, group, lines: Vec::new(), boxes: Default::default(), bounds: None })
     }
 
-    fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
-        self.group.iter_mut().zip(row.cells).for_each(|(column, cell)| column.push(cell));
-        self.lines.push(wkb(row.line).into());
+    fn add(&mut self, row: &OwnedRow) -> Result<(), ExportError> {
+        self.group.iter_mut().zip(row.cells()).for_each(|(column, cell)| column.push(&cell));
+        self.lines.push(wkb(&row.line).into());
         if let Some(around) = Bounds::around(row.line.iter().copied()) {
             let sides = [around.west, around.south, around.east, around.north];
             self.boxes.iter_mut().zip(sides).for_each(|(column, side)| column.push(side));
@@ -70,17 +112,16 @@ impl LayerFormat for GeoParquet {
         if !self.lines.is_empty() {
             self.end_group()?;
         }
+        let geo = metadata::geo(table.options.geoparquet, self.bounds);
         let header = table.source.header.json().to_string();
         let pandas = metadata::pandas(&table.columns);
-        for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header), ("pandas", pandas)] {
+        for (key, value) in [("geo", geo), ("netcert", header), ("pandas", pandas)] {
             self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
         }
         self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
         self.sink.close()
     }
-}
 
-impl GeoParquet {
     fn end_group(&mut self) -> Result<(), ExportError> {
         self.write_group().map_err(failed)?;
         self.writer.flush()?;
@@ -111,6 +152,24 @@ impl GeoParquet {
         group.close()?;
         Ok(())
     }
+}
+
+/// How columns are written. A group is one page a column, so bounds of pages would say again what bounds of groups say, and every reader
+/// would read them.
+fn properties() -> Result<WriterProperties, ParquetError> {
+    let mut properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(ZSTD_LEVEL)?))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_offset_index_disabled(true)
+        // Bounds of bytes say nothing of lines, and no two lines or boxes are the same.
+        .set_column_statistics_enabled(ColumnPath::from(GEOMETRY), EnabledStatistics::None)
+        .set_column_dictionary_enabled(ColumnPath::from(GEOMETRY), false)
+        .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned());
+    for side in SIDES {
+        let path = ColumnPath::new(vec!["bbox".to_owned(), side.to_owned()]);
+        properties = properties.set_column_dictionary_enabled(path, false);
+    }
+    Ok(properties.build())
 }
 
 /// The values of one column in a group.
@@ -179,27 +238,31 @@ impl Column {
     }
 }
 
-fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
+fn schema(table: &Table<'_>) -> Result<Type, ParquetError> {
     let column = |name: &str, physical, repetition, logical| {
         let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
         Ok::<_, ParquetError>(Arc::new(column.with_logical_type(logical).build()?))
     };
     let mut fields = Vec::new();
-    for &(column_name, kind) in columns {
+    for &(name, kind) in &table.columns {
         let (physical, repetition, logical) = match kind {
             ColumnKind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
             ColumnKind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             ColumnKind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
             ColumnKind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
         };
-        fields.push(column(column_name, physical, repetition, logical)?);
+        fields.push(column(name, physical, repetition, logical)?);
     }
-    fields.push(column("geometry", Physical::BYTE_ARRAY, Repetition::REQUIRED, None)?);
+    let line = match table.options.geoparquet {
+        GeoParquetVersion::V1_1 => None,
+        GeoParquetVersion::V2_0 => Some(LogicalType::geometry(Some(metadata::epsg_4326().to_string()))),
+    };
+    fields.push(column(GEOMETRY, Physical::BYTE_ARRAY, Repetition::REQUIRED, line)?);
     let sides = SIDES.map(|side| column(side, Physical::DOUBLE, Repetition::REQUIRED, None));
     let sides = sides.into_iter().collect::<Result<Vec<_>, _>>()?;
     let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
     fields.push(Arc::new(around));
-    Type::group_type_builder(name).with_fields(fields).build()
+    Type::group_type_builder(table.layer.name()).with_fields(fields).build()
 }
 
 /// A line string as well-known binary (ISO 19125), little endian.
