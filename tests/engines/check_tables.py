@@ -8,6 +8,7 @@ one line a layer; stops at the first difference.
 
 import csv
 import json
+import math
 import struct
 import sys
 
@@ -68,9 +69,11 @@ def layer(name, tables, plain):
         rows = csv.reader(text)
         check(next(rows) == columns, "columns:", columns)
         texts_of = {texts[key]: texts for texts in rows}
+    network, ids = list(texts_of), []
     count = 0
     for cells in iter(duck.fetchone, None):
-        texts = texts_of.pop(str(cells[key]), None)
+        ids.append(str(cells[key]))
+        texts = texts_of.pop(ids[-1], None)
         check(texts is not None, f"{name}: {cells[key]} is not in csv, or twice in Parquet")
         for cell, text, column in zip(cells, texts, columns, strict=True):
             check(same(cell, text), f"{name} row {count} {column}: {cell!r}, csv {text!r}")
@@ -84,6 +87,10 @@ def layer(name, tables, plain):
         check(list(row["bbox"].values()) == sides, "bbox:", row["bbox"], sides)
         wide = [min(wide[0], sides[0]), min(wide[1], sides[1]), max(wide[2], sides[2]), max(wide[3], sides[3])]
     check(len(arrow) == count == file.metadata.num_rows and wide == around, "bbox of all:", around, wide)
+    # Neighbours in the file are neighbours on the ground: on the drawn region the way from row to row is half as long as in the network.
+    middles = {id_: ((row["bbox"]["xmin"] + row["bbox"]["xmax"]) / 2, (row["bbox"]["ymin"] + row["bbox"]["ymax"]) / 2) for id_, row in zip(ids, arrow, strict=True)}
+    way = [sum(math.dist(middles[a], middles[b]) for a, b in zip(order, order[1:])) for order in (ids, network)]
+    check(way[0] < 0.7 * way[1], "not along a curve:", way)
     for group in map(file.metadata.row_group, range(file.metadata.num_row_groups)):
         check(group.num_rows <= 2048, "a group of", group.num_rows)
         check({group.column(i).compression for i in range(group.num_columns)} == {"ZSTD"}, "not compressed with zstd")

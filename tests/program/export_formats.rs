@@ -199,6 +199,29 @@ fn duckdb_and_pyarrow_read_what_csv_says() {
     ProgramRun::of("tables.py", &mut command).succeeds().shows("edges: ").shows("turns: ");
 }
 
+#[test]
+fn the_newer_geoparquet_says_the_same_and_is_for_no_other_target() {
+    let place = WorkFolder::with_demo();
+    let export = |target: &str, more: &str, out: &str| {
+        place.netcert(&format!("export {target} --vehicle {VEHICLE} {more} --out {out}"))
+    };
+    export("csv", "--geoparquet 2.0", "no").fails().tells("csv: --geoparquet is for the target geoparquet");
+    export("geoparquet", "--geoparquet 3.0", "no").fails().tells("1.1, 2.0");
+    export("geoparquet", "--geoparquet 1.1", "one").succeeds();
+    export("geoparquet", "", "default").succeeds();
+    export("geoparquet", "--geoparquet 2.0", "two").succeeds();
+    for layer in ["edges", "turns"] {
+        assert_eq!(place.read(&format!("one/{layer}.parquet")), place.read(&format!("default/{layer}.parquet")));
+        assert_ne!(place.read(&format!("one/{layer}.parquet")), place.read(&format!("two/{layer}.parquet")));
+    }
+    let Some(python) = python::tables() else { return };
+    export("csv", "", "csv").succeeds();
+    let mut command = Command::new(python);
+    command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/check_tables.py"));
+    command.arg(place.path("two")).arg(place.path("csv")).arg("2.0");
+    ProgramRun::of("tables.py", &mut command).succeeds().shows("edges: ").shows("turns: ");
+}
+
 /// Overture's own models judge every feature of a folder. `None` if they are not installed.
 pub(crate) fn judged_by_models(place: &WorkFolder, folder: &str) -> Option<ProgramRun> {
     let python = engines::python()?;

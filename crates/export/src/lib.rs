@@ -3,7 +3,8 @@
 //! - All targets share one rule of what is permitted ([`PermitPolicy`]), the rule of `netcert route`. What is not certified is
 //!   refused.
 //! - A header in or beside every output says what the permits depend on ([`Header`]).
-//! - Rows are streamed in order of the network, and the same input gives the same bytes.
+//! - Rows are streamed in order of the network, and the same input gives the same bytes. GeoParquet and FlatGeobuf sort them along a curve,
+//!   outside memory.
 //! - An output is complete or absent ([`Destination`]).
 //!
 //! | file | for |

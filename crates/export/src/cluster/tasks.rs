@@ -11,7 +11,7 @@
 use std::io::Write as _;
 use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::data_type::{ByteArrayType, DoubleType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
@@ -34,7 +34,7 @@ impl TaskWriter {
     /// The file cannot be written.
     pub fn begin(sink: Sink) -> Result<Self, ExportError> {
         let properties = WriterProperties::builder()
-            .set_compression(Compression::SNAPPY)
+            .set_compression(Compression::ZSTD(ZstdLevel::default()))
             // A network is long and like no other one.
             .set_dictionary_enabled(false)
             .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())

@@ -6,6 +6,8 @@
 
 mod metadata;
 mod sorted;
+#[cfg(test)]
+mod tests;
 
 use std::io::Write as _;
 use std::sync::Arc;
@@ -23,7 +25,7 @@ use super::curve;
 use super::layer_files::{LayerFormat, Table};
 use super::layers::Row;
 use crate::osm::LonLat;
-use crate::rows::{Bounds, Cell, ColumnKind};
+use crate::rows::{self, Bounds, Cell, ColumnKind};
 use crate::sorter::Sorter;
 use crate::{ExportError, Sink};
 use sorted::OwnedRow;
@@ -55,7 +57,8 @@ impl LayerFormat for GeoParquet {
 
     fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
         let rows = Sorter::new(table.destination.scratch(".rows")?);
-        Ok(Self { file: GroupedFile::open(table, sink)?, rows, count: 0 })
+        let file = GroupedFile::open(table.layer.name(), &table.columns, table.options.geoparquet, sink)?;
+        Ok(Self { file, rows, count: 0 })
     }
 
     fn row(&mut self, _: &Table<'_>, row: &Row<'_>) -> Result<(), ExportError> {
@@ -74,12 +77,14 @@ impl LayerFormat for GeoParquet {
             }
             file.add(&row?.1)?;
         }
-        file.close(table)
+        let header = table.source.header.json().to_string();
+        file.close([("netcert", header), ("pandas", metadata::pandas(&table.columns))])
     }
 }
 
 /// A file that is written group by group.
 struct GroupedFile {
+    version: GeoParquetVersion,
     writer: SerializedFileWriter<Vec<u8>>,
     sink: Sink,
     group: Vec<Column>,
@@ -89,12 +94,18 @@ struct GroupedFile {
 }
 
 impl GroupedFile {
-    fn open(table: &Table<'_>, sink: Sink) -> Result<Self, ExportError> {
-        let schema = schema(table).map_err(failed)?;
+    /// Begins a file of a layer.
+    fn open(
+        layer: &str,
+        columns: &[rows::Column],
+        version: GeoParquetVersion,
+        sink: Sink,
+    ) -> Result<Self, ExportError> {
+        let schema = schema(layer, columns, version).map_err(failed)?;
         let properties = properties().map_err(failed)?;
         let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties)).map_err(failed)?;
-        let group = table.columns.iter().map(|column| Column::of(column.1)).collect();
-        Ok(Self { writer, sink, group, lines: Vec::new(), boxes: Default::default(), bounds: None })
+        let group = columns.iter().map(|column| Column::of(column.1)).collect();
+        Ok(Self { version, writer, sink, group, lines: Vec::new(), boxes: Default::default(), bounds: None })
     }
 
     fn add(&mut self, row: &OwnedRow) -> Result<(), ExportError> {
@@ -108,14 +119,13 @@ impl GroupedFile {
         if self.lines.len() >= GROUP_ROWS { self.end_group() } else { Ok(()) }
     }
 
-    fn close(mut self, table: &Table<'_>) -> Result<(), ExportError> {
+    /// Ends the file. `more` is its metadata by key.
+    fn close(mut self, more: [(&str, String); 2]) -> Result<(), ExportError> {
         if !self.lines.is_empty() {
             self.end_group()?;
         }
-        let geo = metadata::geo(table.options.geoparquet, self.bounds);
-        let header = table.source.header.json().to_string();
-        let pandas = metadata::pandas(&table.columns);
-        for (key, value) in [("geo", geo), ("netcert", header), ("pandas", pandas)] {
+        let geo = metadata::geo(self.version, self.bounds);
+        for (key, value) in std::iter::once(("geo", geo)).chain(more) {
             self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
         }
         self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
@@ -238,13 +248,13 @@ impl Column {
     }
 }
 
-fn schema(table: &Table<'_>) -> Result<Type, ParquetError> {
+fn schema(layer: &str, columns: &[rows::Column], version: GeoParquetVersion) -> Result<Type, ParquetError> {
     let column = |name: &str, physical, repetition, logical| {
         let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
         Ok::<_, ParquetError>(Arc::new(column.with_logical_type(logical).build()?))
     };
     let mut fields = Vec::new();
-    for &(name, kind) in &table.columns {
+    for &(name, kind) in columns {
         let (physical, repetition, logical) = match kind {
             ColumnKind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
             ColumnKind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
@@ -253,7 +263,7 @@ fn schema(table: &Table<'_>) -> Result<Type, ParquetError> {
         };
         fields.push(column(name, physical, repetition, logical)?);
     }
-    let line = match table.options.geoparquet {
+    let line = match version {
         GeoParquetVersion::V1_1 => None,
         GeoParquetVersion::V2_0 => Some(LogicalType::geometry(Some(metadata::epsg_4326().to_string()))),
     };
@@ -262,7 +272,7 @@ fn schema(table: &Table<'_>) -> Result<Type, ParquetError> {
     let sides = sides.into_iter().collect::<Result<Vec<_>, _>>()?;
     let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
     fields.push(Arc::new(around));
-    Type::group_type_builder(table.layer.name()).with_fields(fields).build()
+    Type::group_type_builder(layer).with_fields(fields).build()
 }
 
 /// A line string as well-known binary (ISO 19125), little endian.
