@@ -399,6 +399,10 @@ fn columns_of_layers_and_tables_are_described_and_descriptions_go_with_their_lay
     let times = "SELECT name, type FROM pragma_table_info('run') WHERE name IN ('started', 'finished')";
     assert_eq!(sqlite(&path, times), "started|DATETIME\nfinished|DATETIME\n");
 
+    sqlite(
+        &path,
+        "INSERT INTO gpkg_data_column_constraints (constraint_name, constraint_type, value) VALUES ('theirs', 'enum', 'a')",
+    );
     let longer = VehicleRecord { definition: r#"{"units":[1]}"#.into(), ..vehicle("EU-SEMI16.5") };
     let settings = Settings { policy: Policy::Carriageway, ..Settings::default() };
     let unknown = (0..edges).map(|edge| EdgeCertificate::bare(EdgeNo::new(edge), Verdict::Unknown(UnknownReason::Cut)));
@@ -411,6 +415,10 @@ fn columns_of_layers_and_tables_are_described_and_descriptions_go_with_their_lay
     let layer = "permit_eu_semi16_5_carriageway";
     assert_eq!(of(layer, "rsc_m"), of("permit_eu_semi16_5_2", "rsc_m"));
     assert_eq!(of("permit_eu_semi16_5", "rsc_m"), "");
+    // A constraint goes with the last column that has it, and those of other programs stay.
+    let unused = "SELECT constraint_name FROM gpkg_data_column_constraints WHERE constraint_name NOT IN \
+                (SELECT constraint_name FROM gpkg_data_columns WHERE constraint_name NOT NULL)";
+    assert_eq!(sqlite(&path, unused), "theirs\n");
     whole(&path);
     if Command::new("ogrinfo").arg("--version").output().is_err() {
         return skipped("ogrinfo", "Debian: gdal-bin");

@@ -16,7 +16,7 @@ use crate::vehicle::Vehicle;
 use crate::words::{Named, at_local_time};
 
 /// The source and licence of the data: <https://opendatacommons.org/licenses/odbl/1-0/>
-const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
+pub(crate) const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
 /// What a comparison says. It stands beside the scope of permits.
 const AS_REFERENCE: &str = "as_reference: by their certificates on the same road, the vehicle needs no more room than this one. It \

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{ABOUT, FolderError};
+use crate::header::LICENCE;
 use crate::pipeline::Divided;
 
 /// What the tasks of a folder were made from.
@@ -36,10 +37,13 @@ pub struct ExtractOrigin {
 }
 
 impl RegionFolder {
-    /// The file's text.
+    /// The file's text. It has the licence of the roads in the tasks, too.
     #[must_use]
     pub fn text(&self) -> String {
-        let value = serde_json::to_value(self).unwrap_or_default();
+        let mut value = serde_json::to_value(self).unwrap_or_default();
+        if let Some(members) = value.as_object_mut() {
+            members.insert("licence".to_owned(), LICENCE.into());
+        }
         format!("{value:#}\n")
     }
 
@@ -61,5 +65,23 @@ impl RegionFolder {
             let detail = format!("`netcert cells` did not write this: {e}");
             FolderError::Damaged { path, detail }
         })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_has_the_licence_and_reads_back() {
+        let divided = Divided { program: "0.2.0+1".to_owned(), extract_blake3: "ab".repeat(32), tasks: 2, edges: 7 };
+        let origin =
+            ExtractOrigin { extract: PathBuf::from("/a.osm.pbf"), country: None, driving_side: None, roads: None };
+        let region = RegionFolder { divided, edges_at_once: 4, origin };
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(ABOUT), region.text()).unwrap();
+        assert!(region.text().contains("\"licence\": \"© OpenStreetMap contributors, ODbL 1.0\""), "{}", region.text());
+        assert_eq!(RegionFolder::read(folder.path()).unwrap(), region);
     }
 }

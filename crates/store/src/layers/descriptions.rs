@@ -138,6 +138,10 @@ pub(crate) async fn describe(c: &mut SqliteConnection) -> Sql<()> {
             add(c, &table, column).await?;
         }
     }
+    // A layer that comes and goes leaves nothing. Constraints of other programs have other names.
+    let unused = "DELETE FROM gpkg_data_column_constraints WHERE constraint_name LIKE 'netcert\\_%' ESCAPE '\\' AND constraint_name \
+                  NOT IN (SELECT constraint_name FROM gpkg_data_columns WHERE constraint_name NOT NULL)";
+    sqlx::query(unused).execute(c).await?;
     Ok(())
 }
 
