@@ -9,7 +9,7 @@ use crate::osm::facts::value::{self, readable};
 use crate::osm::facts::widths::LANE_M;
 
 /// Lane lists of one direction, before their direction is known.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Lists {
     /// `lanes` and similar keys; 0 if untagged.
     pub(super) count: u8,

@@ -26,6 +26,7 @@ mod rules_file;
 mod section;
 mod section_reader;
 mod speed;
+mod supposed_lanes;
 mod tag_lines;
 #[cfg(test)]
 mod tests;
@@ -50,6 +51,7 @@ pub use points::point_facts;
 pub use restrictions::{NoRule, RestrictedTurn, RestrictionKind, TurnRule, turn_rules};
 pub use road_values::{RoadValues, given_class};
 pub use rules::{Rules, RulesError};
+pub use supposed_lanes::SupposedLanes;
 pub use value::{metres, tonnes};
 pub use widths::cross_sections;
 

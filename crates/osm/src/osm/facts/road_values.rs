@@ -38,6 +38,7 @@ impl RoadValues {
     /// The facts. A width that no road has is noted and not used.
     pub fn facts(&self, notes: &mut Notes) -> WayFacts {
         let mut section = SectionReader::default();
+        section.knows_no_rings();
         if let Some(width_m) = self.width_m {
             section.given_width(width_m, notes);
         }

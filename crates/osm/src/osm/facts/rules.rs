@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
-use crate::osm::facts::RoadClass;
+use crate::osm::facts::{RoadClass, SupposedLanes};
 
 pub(super) const CLASSES: usize = RoadClass::ALL.len();
 
@@ -92,12 +92,17 @@ pub(super) struct CountryRing {
     pub(super) width_m: f32,
 }
 
-/// Assumed widths by class and country, and the countries with left-hand traffic.
+/// A country's code and a class, and the lanes of their one-way roads.
+pub(super) type OneWayGroup = (([u8; 2], RoadClass), SupposedLanes);
+
+/// Assumed widths and lanes by class and country, and the countries with left-hand traffic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules {
     pub(super) classes: [ClassRule; CLASSES],
     /// Sorted by code.
     pub(super) countries: Vec<CountryLanes>,
+    /// Sorted by code and class.
+    pub(super) one_way: Vec<OneWayGroup>,
     pub(super) ring_m: Option<f32>,
     /// Sorted by code.
     pub(super) country_rings: Vec<([u8; 2], CountryRing)>,
@@ -120,6 +125,19 @@ impl Rules {
             Ok(at) => self.countries[at].1[class as usize],
             Err(_) => self.classes[class as usize].lane_m,
         }
+    }
+
+    /// Lanes of one direction that are supposed of a class where neither tags nor a group say it.
+    #[must_use]
+    pub fn class_lanes(&self, class: RoadClass) -> u8 {
+        self.class(class).lanes
+    }
+
+    /// The lanes that one-way roads of a country and class are supposed to have, if nine in ten have more than those of their class.
+    #[must_use]
+    pub fn one_way_lanes(&self, class: RoadClass, country: [u8; 2]) -> Option<SupposedLanes> {
+        let at = self.one_way.binary_search_by_key(&(country, class), |(group, _)| *group).ok()?;
+        Some(self.one_way[at].1)
     }
 
     /// Assumed width of a roundabout's one-lane ring, metres, if rings are assumed wider than a lane. The radius is

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::osm::facts::RoadClass;
 use crate::osm::facts::rules::{
-    CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, Rules, RulesError, country_code,
+    CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, OneWayGroup, Rules, RulesError, country_code,
 };
+use crate::osm::facts::supposed_lanes::NINE_IN_TEN;
+use crate::osm::facts::{RoadClass, SupposedLanes};
 
 const BUILTIN: &str = include_str!("../../../../../data/roads.toml");
 const BUILTIN_NAME: &str = "data/roads.toml (built in)";
@@ -16,6 +17,8 @@ const BUILTIN_NAME: &str = "data/roads.toml (built in)";
 /// Bounds of lanes and of carriageways, metres. Values outside are typing errors.
 const LANE_M: [f32; 2] = [1.8, 6.0];
 const CARRIAGEWAY_M: [f32; 2] = [1.8, 12.0];
+/// Least number of tagged ways that a supposed number of lanes rests on.
+const FEWEST_TAGGED: u32 = 100;
 
 impl Rules {
     /// The built-in rules.
@@ -49,6 +52,7 @@ struct File {
     source: BTreeMap<String, String>,
     class: BTreeMap<RoadClass, ClassEntry>,
     country: BTreeMap<String, CountryEntry>,
+    one_way: Option<OneWayEntry>,
     ring: Option<RingEntry>,
     ramp: Option<RampEntry>,
     kerb: KerbEntry,
@@ -69,6 +73,14 @@ struct ClassEntry {
 struct CountryEntry {
     sources: Vec<String>,
     lane_m: BTreeMap<RoadClass, f32>,
+}
+
+/// Lanes of one-way roads, by country and class.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OneWayEntry {
+    sources: Vec<String>,
+    country: BTreeMap<String, BTreeMap<RoadClass, SupposedLanes>>,
 }
 
 /// One-lane carriageways of roundabout rings.
@@ -113,7 +125,7 @@ impl File {
     fn check(self) -> Result<Rules, String> {
         let classes = self.classes()?;
         let (countries, country_rings) = (self.countries(&classes)?, self.country_rings()?);
-        let (ramps_m, kerb) = (self.ramps_m()?, self.kerb()?);
+        let (one_way, ramps_m, kerb) = (self.one_way()?, self.ramps_m()?, self.kerb()?);
         self.known(&self.driving_side.sources, "driving_side")?;
         let DrivingSide { mut left, mut right, .. } = self.driving_side;
         left.sort_unstable();
@@ -122,7 +134,7 @@ impl File {
             return Err(format!("driving_side: {code} is in both lists"));
         }
         let ring_m = self.ring.map(|ring| ring.width_m);
-        Ok(Rules { classes, countries, ring_m, country_rings, ramps_m, kerb, left, right })
+        Ok(Rules { classes, countries, one_way, ring_m, country_rings, ramps_m, kerb, left, right })
     }
 
     fn known(&self, sources: &[String], of: &str) -> Result<(), String> {
@@ -160,6 +172,33 @@ impl File {
             Ok((country_of(code, &of)?, lanes_m))
         };
         self.country.iter().map(country).collect()
+    }
+
+    fn one_way(&self) -> Result<Vec<OneWayGroup>, String> {
+        let Some(entry) = &self.one_way else { return Ok(Vec::new()) };
+        self.known(&entry.sources, "one_way")?;
+        let mut groups = Vec::new();
+        for (code, classes) in &entry.country {
+            for (&class, &group) in classes {
+                let of = format!("one_way.country.{code}.{class:?}");
+                let SupposedLanes { lanes, tagged, reached } = group;
+                within(f32::from(lanes), [2.0, 4.0], &format!("{of}: lanes"))?;
+                if reached > tagged || tagged < FEWEST_TAGGED {
+                    return Err(format!(
+                        "{of}: {reached} of {tagged} ways; at least {FEWEST_TAGGED} tagged ways are needed"
+                    ));
+                }
+                if group.bound() < NINE_IN_TEN {
+                    let bound = group.bound();
+                    return Err(format!(
+                        "{of}: with {reached} of {tagged} ways the share may be {bound:.3}; 0.9 is needed"
+                    ));
+                }
+                groups.push(((country_of(code, &of)?, class), group));
+            }
+        }
+        groups.sort_unstable_by_key(|(group, _)| *group);
+        Ok(groups)
     }
 
     fn country_rings(&self) -> Result<Vec<([u8; 2], CountryRing)>, String> {
@@ -240,6 +279,11 @@ mod tests {
             ("primary = 4.2", "primary = 0.2", "ramp: width_m of Primary = 0.2 is not within 1.8 to 12"),
             ("[ring.country.DE]", "[ring.country.de]", "ring.country.de: not an ISO 3166-1 code"),
             ("country.US", "country.usa", "country usa: not an ISO 3166-1 code"),
+            ("[one_way.country.US", "[one_way.country.us", "one_way.country.us.Primary: not an ISO 3166-1 code"),
+            ("lanes = 2\ntagged", "lanes = 1\ntagged", "one_way.country.US.Primary: lanes = 1 is not within 2 to 4"),
+            ("reached = 921", "reached = 984", "984 of 983 ways"),
+            ("tagged = 983\nreached = 921", "tagged = 99\nreached = 99", "at least 100 tagged ways are needed"),
+            ("reached = 921", "reached = 902", "the share may be 0.899; 0.9 is needed"),
             ("lanes = 2", "lanes = 2\nlane = 2", "unknown field"),
             ("sources = [", "sources = [\"nowhere\", ", "\"nowhere\" is not listed"),
             ("right = [", "right = [\"AU\", ", "driving_side: AU is in both lists"),

@@ -140,6 +140,9 @@ pub(super) enum Mark {
     Along = 32,
     /// The carriageway is laid out for traffic against the way's node order only.
     Against = 64,
+    /// A tag says something of lanes, even if it does not count them all, or the source does not say which roads are rings. No group of
+    /// roads then says how many lanes this one has.
+    Ungrouped = 128,
 }
 
 /// A set of [`Mark`]s.

@@ -44,6 +44,8 @@ pub(super) struct SectionReader {
     oncoming_lane: bool,
     oncoming: bool,
     kerbs: KerbReader,
+    /// Whether the source does not say which roads are rings of roundabouts.
+    rings_unknown: bool,
     placements: [Option<Placement>; 3],
 }
 
@@ -99,6 +101,11 @@ impl SectionReader {
 
     pub(super) fn has_width(&self) -> bool {
         self.widths.iter().any(Option::is_some)
+    }
+
+    /// Notes that the source does not say which roads are rings of roundabouts.
+    pub(super) fn knows_no_rings(&mut self) {
+        self.rings_unknown = true;
     }
 
     /// Takes a width of the carriageway that is no tag, metres. The same bounds hold.
@@ -182,6 +189,8 @@ impl SectionReader {
 
     /// Combines the tags, once the directions are known for which the carriageway is laid out.
     pub(super) fn finish(self, oneway: Oneway, sharing: Sharing, notes: &mut Notes) -> SectionTags {
+        let lane_tags = self.middle != Lists::default() || self.lists.iter().any(|lists| *lists != Lists::default());
+        let ungrouped = self.rings_unknown || self.oncoming || self.oncoming_lane || lane_tags;
         let mut lists = self.lists;
         let both_ways = self.both_ways.max(self.middle.lanes()).max(self.middle.turns);
         // More lanes are a typing error in one of the tags, so none is used.
@@ -231,6 +240,7 @@ impl SectionReader {
                 (Mark::WholeRoad, whole_road),
                 (Mark::Along, oneway == Oneway::Forward),
                 (Mark::Against, oneway == Oneway::Backward),
+                (Mark::Ungrouped, ungrouped),
             ]),
             lanes: lists[0].count,
             both_ways,

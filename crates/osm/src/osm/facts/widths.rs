@@ -1,10 +1,10 @@
 //! From tags to strips: the cross section of a way, laid out from its left edge to its right edge.
 //!
 //! The evidence in order of precedence is `width:carriageway`, `width`, `est_width` or `width:lanes`, then tagged lanes
-//! times an assumed lane width, then class and country. Parking, cycle lanes and shoulders are deducted from a tagged
-//! carriageway; they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement`
-//! says otherwise. If tags contradict each other, the narrower reading counts. A width counts however small it is: no
-//! assumed width replaces it.
+//! times an assumed lane width, then class and country, which also say how many lanes are supposed. Parking, cycle lanes
+//! and shoulders are deducted from a tagged carriageway; they add nothing to an assumed one. The way's line is the middle
+//! of the carriageway unless `placement` says otherwise. If tags contradict each other, the narrower reading counts. A
+//! width counts however small it is: no assumed width replaces it.
 
 use crate::osm::facts::country::{Jurisdiction, TrafficSide};
 use crate::osm::facts::layout::{LayoutSegment, NO_SECTION, RoadLayout, SHARED, Use, kerb_on_the_left_of_the_way};
@@ -33,10 +33,11 @@ pub fn cross_sections(
     rules: &Rules,
 ) -> [CrossSection; 2] {
     let class = rules.class(facts.class);
+    // A ramp has one lane unless tagged otherwise, whatever its class.
+    let lanes = if facts.link { 1 } else { lanes_of_group(facts, jurisdiction, rules).unwrap_or(class.lanes) };
     let builder = Builder {
         tags: &facts.section,
-        // A ramp has one lane unless tagged otherwise, whatever its class.
-        class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
+        class: ClassRule { lanes, ..class },
         lane_m: untagged_lane_m(facts, jurisdiction, rules),
         single_m: if facts.roundabout {
             rules.ring_m(jurisdiction.country, ring_radius_m)
@@ -56,6 +57,17 @@ pub fn cross_sections(
             [Direction::Forward, Direction::Backward].map(|direction| layout.section(direction, jurisdiction.side()))
         }
     }
+}
+
+/// The lanes that a road is supposed to have because of its group: a one-way road that is no link and no ring, if no tag says anything of lanes or
+/// of a width. `None`: those of its class.
+fn lanes_of_group(facts: &WayFacts, jurisdiction: &Jurisdiction, rules: &Rules) -> Option<u8> {
+    let group = rules.one_way_lanes(facts.class, jurisdiction.country)?;
+    let section = &facts.section;
+    let one_way = facts.traffic() != Oneway::No && !facts.link && !facts.roundabout;
+    let ungrouped = [Mark::Ungrouped, Mark::Unreadable, Mark::Narrow].iter().any(|&mark| section.is(mark));
+    let measured = section.carriageway.is_some() || section.physical.is_some();
+    (one_way && !ungrouped && !measured).then_some(group.lanes)
 }
 
 /// The assumed width of a lane. Those of a narrow road of unknown width are no wider than a narrow road.

@@ -7,6 +7,7 @@ mod lists;
 mod narrow;
 mod properties;
 mod sections;
+mod supposed;
 mod ways;
 
 use crate::osm::facts::*;

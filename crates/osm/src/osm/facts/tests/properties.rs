@@ -143,8 +143,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
     #[test]
-    fn strips_are_sound_whatever_the_tags(tags in some_tags(), left_hand_traffic: bool) {
-        let jurisdiction = Jurisdiction { left_hand_traffic, ..RIGHT };
+    fn strips_are_sound_whatever_the_tags(
+        tags in some_tags(), country in prop::sample::select(vec![*b"ZZ", *b"US", *b"DE"]), left_hand_traffic: bool,
+    ) {
+        let jurisdiction = Jurisdiction { country, left_hand_traffic };
         let facts = way_facts(&borrowed(&tags)).unwrap().facts;
         for section in cross_sections(&facts, &jurisdiction, None, &Rules::builtin().unwrap()) {
             let strips = [section.lane, section.direction, section.carriageway];
