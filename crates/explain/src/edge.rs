@@ -6,11 +6,11 @@ use super::legal::RuleConflict;
 use super::no_bound;
 use super::ride::NominalRide;
 use super::tightest::{HingePlace, LimitingPlace};
-use super::{Explanation, Geometry, RoadFacts};
+use super::{Explanation, Geometry, LaneGroup, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, EdgeNo, Network, Road, Stroke, destination_tag};
-use crate::osm::facts::{Oneway, Policy, RuleSet, WidthSource};
+use crate::osm::facts::{CrossSection, Oneway, Policy, RuleSet, Rules, WidthSource};
 use crate::rows::{CertificateRow, EdgeKey, RoadName};
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
@@ -227,6 +227,19 @@ fn width_tags(road: &Road, source: Option<WidthSource>) -> Vec<String> {
     road.width_tags.iter().flat_map(|lines| lines.lines()).filter(behind).map(str::to_owned).collect()
 }
 
+/// The group that says how many lanes a road has, if it is not its class alone.
+fn lane_group(road: &Road, section: &CrossSection) -> Option<LaneGroup> {
+    let lanes = section.supposed_lanes()?;
+    let rules = Rules::builtin().ok()?;
+    let of_class = lanes <= rules.class_lanes(road.class);
+    if of_class || road.oneway == Oneway::No || road.link || road.roundabout {
+        return None;
+    }
+    let country = std::str::from_utf8(&road.country).ok()?.to_owned();
+    let rests_on = rules.one_way_lanes(road.class, road.country).filter(|group| group.lanes == lanes);
+    Some(LaneGroup { country, class: road.class, lanes, rests_on })
+}
+
 /// The tags of narrow places on an edge. A tag of the whole road is none, unless there is no other.
 fn narrow_places(road: &Road, edge: &Edge) -> Vec<String> {
     let of_road = road.legal[edge.direction as usize].passage_tags();
@@ -245,6 +258,7 @@ fn road_facts(network: &Network, key: EdgeKey, edge: &Edge, policy: Policy, vehi
         title: network.title(edge),
         policy,
         width_source,
+        supposed_lanes: lane_group(road, &section).filter(|_| width_source == Some(WidthSource::Assumed)),
         width_tags: width_tags(road, width_source),
         narrowed_by: if edge.narrowings.is_empty() { Vec::new() } else { narrow_places(road, edge) },
         unreadable_widths: edge.legal.rules.iter().flat_map(RuleSet::unreadable_widths).map(str::to_owned).collect(),

@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use super::words::words;
-use super::{BodyPart, Explanation, Geometry, KerbHint, ShorterHint};
+use super::{BodyPart, Explanation, Geometry, KerbHint, LaneGroup, ShorterHint};
 use crate::osm::facts::WidthSource;
 use crate::vehicle::Vehicle;
 use netcert_base::words::{Named as _, verdict_words};
@@ -29,6 +29,7 @@ pub fn json(e: &Explanation) -> Value {
             "title": facts.title,
             "corridor": facts.policy.name(),
             "width_source": facts.width_source.map(WidthSource::name),
+            "supposed_lanes": facts.supposed_lanes.as_ref().map(supposed_lanes),
             "width_tags": facts.width_tags,
             "narrowed_by": facts.narrowed_by,
             "lane_shared": facts.lane_shared,
@@ -49,6 +50,18 @@ pub fn json(e: &Explanation) -> Value {
         "limiting": e.geometry.as_ref().map(|g| limiting(g, &e.vehicle)),
         "hints": hints(e),
         "conflict": conflict,
+    })
+}
+
+/// The group that says how many lanes a road has, with the tagged ways that it rests on.
+fn supposed_lanes(group: &LaneGroup) -> Value {
+    json!({
+        "lanes": group.lanes,
+        "country": group.country,
+        "class": group.class.name(),
+        "oneway": true,
+        "tagged_ways": group.rests_on.map(|group| group.tagged),
+        "ways_with_as_many": group.rests_on.map(|group| group.reached),
     })
 }
 

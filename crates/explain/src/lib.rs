@@ -64,7 +64,7 @@ pub use words::{Words, words};
 
 use crate::corridor::{Corridor, Frame, Taper};
 use crate::osm::LonLat;
-use crate::osm::facts::{Policy, WidthSource};
+use crate::osm::facts::{Policy, RoadClass, SupposedLanes, WidthSource};
 use crate::rows::{EdgeKey, RoadName};
 use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
@@ -114,6 +114,9 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// The lanes that the direction is supposed to have because of its group. `None` if a tag or the class alone says how many, or if the width
+    /// under that policy rests on more than class and country.
+    pub supposed_lanes: Option<LaneGroup>,
     /// The tags behind the width under that policy, as the map has them: `key=value`.
     pub width_tags: Vec<String>,
     /// The tags of narrow places on the edge, such as `traffic_calming=choker`.
@@ -126,6 +129,19 @@ pub struct RoadFacts {
     pub destination_tag: Option<String>,
     /// The map's line in driving direction.
     pub line: Vec<LonLat>,
+}
+
+/// The group of one-way roads that says how many lanes a road is supposed to have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LaneGroup {
+    /// ISO 3166-1 alpha-2 code.
+    pub country: String,
+    /// Class of the roads.
+    pub class: RoadClass,
+    /// Lanes of the direction.
+    pub lanes: u8,
+    /// The tagged ways that the number rests on. `None` if the roads were laid out with rules that the program does not have built in.
+    pub rests_on: Option<SupposedLanes>,
 }
 
 impl Explanation {

@@ -3,12 +3,12 @@
 use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
-use super::{BodyPart, Explanation, Geometry, HingePlace, LimitingPlace};
+use super::{BodyPart, Explanation, Geometry, HingePlace, LaneGroup, LimitingPlace};
 use crate::corridor::{Taper, TaperCause};
 use crate::network::destination_words;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
-use netcert_base::words::verdict_words;
+use netcert_base::words::{Named as _, verdict_words};
 
 /// Below this leeway, metres, the missing width is not named, because the bounds are wider than any road.
 const FAR_M: f64 = -100.0;
@@ -57,11 +57,30 @@ pub fn words(e: &Explanation) -> Words {
         reasons
             .push("Both directions share the lane: it is the whole road, and oncoming traffic has to wait.".to_owned());
     }
+    reasons.extend(e.road.as_ref().and_then(|road| road.supposed_lanes.as_ref()).map(supposed_lanes));
     if let Some(road) = e.road.as_ref().filter(|road| !road.narrowed_by.is_empty()) {
         reasons.push(format!("The road has a narrow place: {}.", road.narrowed_by.join(", ")));
     }
     reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
+}
+
+/// Which rule says how many lanes the road has, and what it rests on. The share is rounded down.
+fn supposed_lanes(group: &LaneGroup) -> String {
+    let LaneGroup { country, class, lanes, rests_on } = group;
+    let because = match rests_on {
+        Some(group) => format!(
+            "{:.0} % of the {} one-way roads of class {} in {country} whose lanes are tagged have as many or more",
+            (100.0 * group.share()).floor(),
+            group.tagged,
+            class.name()
+        ),
+        None => format!(
+            "the rules with which the roads were read say so of one-way roads of class {} in {country}",
+            class.name()
+        ),
+    };
+    format!("How many lanes the road has is not tagged: {lanes} are supposed, because {because}.")
 }
 
 fn destination_only(tag: &str) -> String {
