@@ -56,8 +56,8 @@ CREATE TABLE road (
 -- where no corridor could be laid (then `centreline_deviation_m` is NULL too). `width_source` belongs to
 -- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy
 -- vehicles; `cut`: the extract ends on it. `lane_shared`: a two-way road without a lane for each direction, so that the lane is the whole
--- road, and oncoming traffic has to wait. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for
--- some vehicle. `legal_tags` as `tags` in `legal`, with those of nodes on the edge; `width_tags` as in `road`.
+-- road, and oncoming traffic has to wait. `supposed_lanes`: lanes of the direction where class and country say how many and how wide, and no tag
+-- does. `rules` as in `legal`; `open_when`: those of them that close or limit the edge at some times, for some vehicle. `legal_tags` as `tags` in `legal`, with those of nodes on the edge; `width_tags` as in `road`.
 CREATE TABLE edge (
     fid INTEGER PRIMARY KEY NOT NULL,
     edge_id INTEGER NOT NULL,
@@ -100,7 +100,9 @@ CREATE TABLE edge (
     open_when TEXT,
     legal_tags TEXT,
     width_tags TEXT,
-    lane_shared BOOLEAN AS (coalesce(oneway = 'no' AND lane_width_m = carriageway_width_m, 0))
+    lane_shared BOOLEAN AS (coalesce(oneway = 'no' AND lane_width_m = carriageway_width_m, 0)),
+    supposed_lanes INTEGER AS (CASE WHEN width_source = 'assumed' AND direction_width_source = 'assumed'
+                               THEN CAST(round(direction_width_m / lane_width_m) AS INTEGER) END)
 );
 
 -- Places narrower than the cross section; an edge's are narrowing_start < narrowing_no <= narrowing_end. `vertex` counts

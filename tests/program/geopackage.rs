@@ -523,6 +523,18 @@ fn wrong_files_are_told_apart_and_left_alone() {
     assert!(matches!(Database::open(&at("newer.gpkg")), Err(StoreError::Newer { found: 99, .. })));
     sqlite(&at("newer.gpkg"), "DELETE FROM _sqlx_migrations WHERE version > 3");
     assert!(matches!(Database::open(&at("newer.gpkg")), Err(StoreError::Older { .. })));
+    // The form that 0.2.0 wrote lacks a column that nothing reads; any other form is refused.
+    build(&at("earlier.gpkg"), 2, |i, _| i);
+    let form = |checksum: &str| {
+        let sql = format!("UPDATE _sqlx_migrations SET checksum = x'{checksum}' WHERE version = 2");
+        sqlite(&at("earlier.gpkg"), &sql);
+        Database::open(&at("earlier.gpkg"))
+    };
+    let earlier = "3ec0c4967b59687e6cf821a35d2f1e28a9b81ffcdf2aaa14146d11a46a5f9ff329e299d56199a80d3f56b051e983c988";
+    let mut database = form(earlier).unwrap();
+    assert_eq!(database.load_network().unwrap().roads.len(), 2);
+    database.close().unwrap();
+    assert!(matches!(form(&earlier.replace('3', "4")), Err(StoreError::Older { .. })));
 }
 
 #[test]
