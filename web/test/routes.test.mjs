@@ -218,3 +218,26 @@ inPage("what blocks a route is numbered, with its kind, its reason and what that
   await page.click(".drawer-back");
   await page.waitForSelector(".route .verdict.is-blocked");
 });
+
+inPage("a route may use the oncoming lane where its own is not enough, and says where", "#v=AU-SEMI19&route=126.026942,-30.203315;126.046615,-30.205563", async (page) => {
+  await page.waitForSelector(".route .verdict:not(.is-safe)", { timeout: 120_000 });
+  assert.deepEqual(await page.locator("#trip-room option").allTextContents(), ["nothing more", "the oncoming lane, too"]);
+  const asked = page.waitForRequest(/\/api\/route\?.*at_most=carriageway/);
+  await page.selectOption("#trip-room", "carriageway");
+  await asked;
+  await certified(page);
+  const uses = page.locator(".uses li");
+  assert.equal(await uses.count(), 1);
+  assert.match(await uses.first().textContent(), /Stock Route Road into .*the oncoming lane, 1[5-8]\d m, at most 4\.60 m over the line, at the turn/);
+  assert.match(await page.locator(".route-content").textContent(), /Oncoming traffic must be held back .* Nothing here says that it is\./);
+  assert.match(await page.locator(".command code").textContent(), /--corridor lane .*--at-most carriageway$/);
+  assert.match(await page.evaluate(() => location.hash), /most=carriageway/);
+  // The stretch is dashed on the map: it lies within the route and has its length.
+  await idle(page);
+  const dashed = await page.evaluate(() => globalThis.netcert.map.getStyle().sources["own-route"].data.features);
+  const oncoming = dashed.filter(({ properties }) => properties.kind === "oncoming");
+  assert.equal(oncoming.length, 1);
+  const line = oncoming[0].geometry.coordinates;
+  const metres = line.slice(1).reduce((sum, [lon, lat], i) => sum + Math.hypot((lon - line[i][0]) * 111_320 * Math.cos((30.2 * Math.PI) / 180), (lat - line[i][1]) * 110_800), 0);
+  assert.ok(metres > 150 && metres < 185, `${metres} m`);
+});

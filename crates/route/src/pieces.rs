@@ -350,17 +350,17 @@ impl Strokes {
     /// The stroke has no corridor; the error is the reason.
     pub fn line(&mut self, stroke: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (network, policy, params) = (&self.roads.network, self.settings.policy, &self.settings.corridor);
-        let raised = self.raised_on(stroke);
+        let numbers = self.numbers_on(stroke);
         let sections = |edge: &Edge| {
             let section = network.section(edge);
-            raised.get(&edge.id).map_or(section, |&strip| section.opened_to(strip))
+            numbers.get(&edge.id).map_or(section, |&no| self.rungs.section(no, section))
         };
         let make = || StrokeLine::on(network, stroke, &sections, policy, params).map(Arc::new);
         self.made.entry(stroke).or_insert_with(make).clone()
     }
 
-    /// By id, the strips of a stroke's edges that are wider than the policy's, those of its approach included.
-    fn raised_on(&self, stroke: u32) -> FxHashMap<i64, Policy> {
+    /// The numbers of a stroke's edges by their ids, those of its approach included. Empty if no road is wider than its policy's strip.
+    fn numbers_on(&self, stroke: u32) -> FxHashMap<i64, EdgeNo> {
         let network = &self.roads.network;
         let Some(facts) = network.strokes.get(stroke as usize).filter(|_| !self.rungs.is_level()) else {
             return FxHashMap::default();
@@ -368,8 +368,7 @@ impl Strokes {
         let ranges = [&facts.approach, &facts.edges];
         let edges =
             ranges.into_iter().filter_map(|range| network.stroke_edges.get(range.start as usize..range.end as usize));
-        let strip = |&edge: &EdgeNo| Some((network.edges.get(edge.index())?.id, self.rungs.edge(edge)));
-        edges.flatten().filter_map(strip).filter(|(_, strip)| *strip > self.settings.policy).collect()
+        edges.flatten().filter_map(|&no| Some((network.edges.get(no.index())?.id, no))).collect()
     }
 
     /// The line of the stroke that an edge belongs to.

@@ -1,8 +1,9 @@
 //! Rungs: the strip of the road on which a vehicle uses each edge and turn.
 //!
-//! A driver of one policy uses the same strip everywhere. A driver of several sets climbs: each edge and each turn stands on the
-//! narrowest strip on which it is certified. Rungs only choose strips. What is safe on a way of several rungs is decided by one
-//! certificate over the whole way, as on any other way.
+//! A driver of one policy uses the same strip everywhere. A driver of several sets climbs: the search may use each edge and each turn that
+//! any set certifies, at the price of the narrowest strip. On the way that it finds, roads begin with the narrowest strip and turns with the
+//! one of their permits. Where the way is not safe, roads become wider by what is missing, and turns climb by one rung. What is safe on a way
+//! of several widths is decided by one certificate over the whole way, as on any other way.
 
 use std::sync::Arc;
 
@@ -13,31 +14,43 @@ use super::drive::Drive;
 use super::driver::Driver;
 use super::permits::{Permit, Permits};
 use super::pieces::TurnEnds;
-use crate::network::{EdgeNo, MovementKind, Movements};
-use crate::osm::facts::Policy;
+use crate::network::{EdgeNo, MovementKind, Movements, Network};
+use crate::osm::facts::{CrossSection, Policy};
 use crate::settings::Settings;
+use crate::stet::SpanResult;
 use crate::words::Named as _;
 
 /// Where a place is raised, so much of the road before and after it is raised, too, metres. A vehicle swings out before the place where it
 /// needs the room.
 const BESIDE_M: f64 = 30.0;
+/// What a road gets beyond what is missing, metres.
+const MORE_M: f32 = 0.1;
 
 /// The strip of each edge and turn.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Rungs {
     /// The strip of what is not listed. No listed strip is narrower.
     base: Policy,
     /// The widest strip to which an edge or turn may be raised.
     top: Policy,
+    /// The strips of the edges' permits.
     edges: FxHashMap<EdgeNo, Policy>,
     turns: FxHashMap<TurnEnds, Policy>,
+    /// How much wider than the base's strip the road counts, metres.
+    widened: FxHashMap<EdgeNo, f32>,
 }
 
 impl Rungs {
     /// The same strip everywhere.
     #[must_use]
     pub fn level(policy: Policy) -> Self {
-        Self { base: policy, top: policy, edges: FxHashMap::default(), turns: FxHashMap::default() }
+        Self {
+            base: policy,
+            top: policy,
+            edges: FxHashMap::default(),
+            turns: FxHashMap::default(),
+            widened: FxHashMap::default(),
+        }
     }
 
     /// Whether every edge and turn has the same strip, and keeps it.
@@ -46,7 +59,7 @@ impl Rungs {
         self.base == self.top
     }
 
-    /// The strip of an edge.
+    /// The narrowest strip under which an edge has a permit.
     #[must_use]
     pub fn edge(&self, edge: EdgeNo) -> Policy {
         self.edges.get(&edge).copied().unwrap_or(self.base)
@@ -58,31 +71,95 @@ impl Rungs {
         self.turns.get(&ends).copied().unwrap_or(self.base)
     }
 
-    /// Raises a place of a way and the edges beside it by one rung. `length_m` is the length of an edge. Returns the edges and turns that
-    /// stand higher now; there are none if all stand on the top.
-    pub(super) fn raise(&mut self, drive: &Drive, at: PartKind, length_m: &dyn Fn(EdgeNo) -> f64) -> Raised {
+    /// The section of an edge's road as it counts. `section` is that of the map.
+    pub(super) fn section(&self, edge: EdgeNo, section: CrossSection) -> CrossSection {
+        self.widened.get(&edge).map_or(section, |&more_m| section.widened(self.base, self.top, more_m))
+    }
+
+    /// Makes a road wider by what is missing and a little more, metres. Returns whether it could be.
+    fn widen(&mut self, edge: EdgeNo, section: &CrossSection, missing_m: f32) -> bool {
+        let (room_m, more_m) = (section.room_m(self.base, self.top), self.widened.entry(edge).or_default());
+        let raised = *more_m < room_m;
+        if raised {
+            *more_m = (*more_m + missing_m + MORE_M).min(room_m);
+        }
+        raised
+    }
+
+    fn raise_turn(&mut self, ends: TurnEnds) -> bool {
+        let above = Policy::ALL.iter().copied().find(|next| *next > self.turn(ends)).filter(|next| *next <= self.top);
+        above.is_some_and(|policy| self.turns.insert(ends, policy) != Some(policy))
+    }
+
+    /// Raises a place of a way and the road beside it: the turn by one rung, the roads by `missing_m`. Returns what stands higher now; there
+    /// is nothing if all stand on the top.
+    pub(super) fn raise(&mut self, network: &Network, drive: &Drive, at: PartKind, missing_m: f32) -> Raised {
         let (first, last, turn) = match at {
             PartKind::Edge(edge) => (edge, edge, None),
             PartKind::Turn { from, to } => (from, to, Some(TurnEnds { from, to })),
         };
         let mut raised = Raised::default();
-        for edge in beside(drive, first, last, length_m) {
-            if let Some(policy) = self.above(self.edge(edge)) {
-                self.edges.insert(edge, policy);
-                raised.edges.push(edge);
+        let length_m = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
+        for no in beside(drive, first, last, &length_m) {
+            let section = network.edges.get(no.index()).map(|edge| network.section(edge));
+            if section.is_some_and(|section| self.widen(no, &section, missing_m)) {
+                raised.edges.push(no);
             }
         }
-        if let Some(ends) = turn
-            && let Some(policy) = self.above(self.turn(ends))
-        {
-            self.turns.insert(ends, policy);
-            raised.turns.push(ends);
+        raised.turns.extend(turn.filter(|&ends| self.raise_turn(ends)));
+        raised
+    }
+
+    /// Raises what fails on a way: of each run of failing parts the narrowest road that can become wider, else its turns, else the roads
+    /// beside the run. A road that only leads to a narrow one keeps its strip so.
+    pub(super) fn raise_failing(&mut self, network: &Network, parts: &[(PartKind, SpanResult)]) -> Raised {
+        let mut raised = Raised::default();
+        let mut at = 0;
+        for run in parts.chunk_by(|a, b| a.1.safe() == b.1.safe()) {
+            let (from, to) = (at, at + run.len());
+            at = to;
+            if run.iter().all(|(_, result)| result.safe()) {
+                continue;
+            }
+            let missing_m = run.iter().filter_map(|(_, result)| result.rsc_m).fold(0.0, |most: f64, m| most.max(-m));
+            let missing_m = 2.0 * missing_m as f32;
+            let mut roads: Vec<(f32, EdgeNo)> = run.iter().filter_map(|(kind, _)| self.width(network, *kind)).collect();
+            roads.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let mut widen = |edge: EdgeNo| {
+                let section = network.edges.get(edge.index()).map(|edge| network.section(edge));
+                section.is_some_and(|section| self.widen(edge, &section, missing_m))
+            };
+            if let Some((_, edge)) = roads.into_iter().find(|(_, edge)| widen(*edge)) {
+                raised.edges.push(edge);
+                continue;
+            }
+            let ends = |kind: PartKind| match kind {
+                PartKind::Turn { from, to } => Some(TurnEnds { from, to }),
+                PartKind::Edge(_) => None,
+            };
+            let turns: Vec<TurnEnds> = run.iter().filter_map(|(kind, _)| ends(*kind)).collect();
+            let turns: Vec<TurnEnds> = turns.into_iter().filter(|&ends| self.raise_turn(ends)).collect();
+            if !turns.is_empty() {
+                raised.turns.extend(turns);
+                continue;
+            }
+            let before = from.checked_sub(1).and_then(|before| parts.get(before));
+            for (kind, _) in before.into_iter().chain(parts.get(to)) {
+                let PartKind::Edge(edge) = *kind else { continue };
+                let section = network.edges.get(edge.index()).map(|edge| network.section(edge));
+                if section.is_some_and(|section| self.widen(edge, &section, missing_m)) {
+                    raised.edges.push(edge);
+                }
+            }
         }
         raised
     }
 
-    fn above(&self, policy: Policy) -> Option<Policy> {
-        Policy::ALL.iter().copied().find(|next| *next > policy).filter(|next| *next <= self.top)
+    /// The width of a part that is an edge, as it counts, metres.
+    fn width(&self, network: &Network, kind: PartKind) -> Option<(f32, EdgeNo)> {
+        let PartKind::Edge(no) = kind else { return None };
+        let section = network.section(network.edges.get(no.index())?);
+        Some((self.section(no, section).strip(self.base)?.width_m(), no))
     }
 }
 

@@ -57,13 +57,27 @@ pub struct StripUse {
     pub side: Side,
 }
 
-/// The edges of two strips at a station, metres to the left of the centreline.
+/// How far the edges of the route's corridor, and of the strip that a turn near by may use, lie beyond those of narrower strips at a station,
+/// `[left, right]`, metres. Negative: inside them.
 #[derive(Debug, Clone, Copy)]
 struct StationStrips {
+    corridor_beyond: StripEdges,
+    turn_beyond: StripEdges,
+}
+
+/// One number for each narrower strip.
+#[derive(Debug, Clone, Copy)]
+struct StripEdges {
     lane: [f64; 2],
     direction: [f64; 2],
-    /// The whole strip that a turn near by may use.
-    turn: [f64; 2],
+}
+
+impl StripEdges {
+    /// The greater of each.
+    fn most(self, other: Self) -> Self {
+        let most = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        Self { lane: most(self.lane, other.lane), direction: most(self.direction, other.direction) }
+    }
 }
 
 /// How far bodies stand beyond a strip at one station.
@@ -90,8 +104,8 @@ impl StripUse {
             let strips = PartStrips::new(strokes, path, part, edge, &windows);
             for k in part.stations.clone() {
                 let window = windows.iter().position(|window| window.stations.contains(&k));
-                let body = if window.is_some() { None } else { Some(extent(path, certificate, k)) };
-                let Some(beyond) = strips.beyond(k, body) else { continue };
+                let leeways = if window.is_some() { None } else { Some(leeways(certificate, k)) };
+                let Some(beyond) = strips.beyond(k, leeways) else { continue };
                 let found = Self::at_station(path, part.kind, k, beyond, window);
                 match window {
                     Some(window) => {
@@ -185,19 +199,13 @@ fn turn_windows(path: &RoutePath, vehicle: &Vehicle) -> Vec<AreaWindow> {
     turns.map(window).collect()
 }
 
-/// The farthest places of bodies at a station, metres to the left of the centreline: `[left, right]`. They stay within the strip, less the
-/// route's RSC. `None` on a side that no body passes.
-fn extent(path: &RoutePath, certificate: &Certificate, k: usize) -> [Option<f64>; 2] {
-    let (corridor, rsc_m) = (&path.corridor, certificate.result.rsc_m.unwrap_or(0.0));
+/// The least leeway of bodies at a station, `[left, right]`, metres; not below the route's RSC. `None` on a side that no body passes.
+fn leeways(certificate: &Certificate, k: usize) -> [Option<f64>; 2] {
+    let rsc_m = certificate.result.rsc_m.unwrap_or(0.0);
     // Where the bounds do not close at γ = 1, they do at the route's γ, with the route's RSC.
     let closes = |m: &f64| if *m <= 0.5 * NOTHING_M { rsc_m } else { *m };
-    let leeway = |column: &[f64]| column.get(k).map(closes).and_then(known_m).map(|m| m.max(rsc_m));
-    // A body between two stations has its leeway against an edge between theirs.
-    let near = k.saturating_sub(1)..(k + 2).min(corridor.len());
-    let widest = |column: &[f64]| column[near.clone()].iter().copied().fold(0.0, f64::max);
-    let left = leeway(&certificate.left_m).map(|leeway_m| widest(&corridor.left_m) - leeway_m);
-    let right = leeway(&certificate.right_m).map(|leeway_m| leeway_m - widest(&corridor.right_m));
-    [left, right]
+    [&certificate.left_m, &certificate.right_m]
+        .map(|column| column.get(k).map(closes).and_then(known_m).map(|m| m.max(rsc_m)))
 }
 
 /// The strips along a part of a route that lies on an edge.
@@ -229,7 +237,7 @@ impl PartStrips {
         let network = strokes.network();
         let section = network.section(network.edges.get(edge.index())?);
         let places = on_line(path, part.stations.clone(), &line).ok()?;
-        let own = section.strip(strokes.settings().policy.max(strokes.rungs().edge(edge)))?;
+        let own = strokes.rungs().section(edge, section).strip(strokes.settings().policy)?;
         let of_window = |window: &AreaWindow| match window.at {
             // What was measured or traced at a junction may reach beyond all lanes.
             PartKind::Turn { from, to } if has_surface(network, [from, to]) => Policy::Carriageway,
@@ -240,27 +248,34 @@ impl PartStrips {
             let near = windows.iter().filter(|window| window.stations.contains(&k));
             near.map(of_window).max().unwrap_or(strokes.settings().policy)
         };
-        let at = |(k, (station, aside_m)): (usize, (usize, f64))| {
-            strips_at(&line, station, aside_m, own, &section, turn_strip(k))
+        let corridor = &path.corridor;
+        let at = |(k, place): (usize, LinePlace)| {
+            let half_widths = [corridor.left_m[k], corridor.right_m[k]];
+            strips_at(&line, place, half_widths, own, &section, turn_strip(k))
         };
         Some(part.stations.clone().zip(places).map(at).collect())
     }
 
-    /// How far bodies stand beyond a strip at a station of the route. `body`: their farthest places; `None` where the turn's area counts.
-    fn beyond(&self, k: usize, body: Option<[Option<f64>; 2]>) -> Option<Beyond> {
-        let Some(strips) = self.stations.get(k - self.first)? else {
+    /// How far bodies stand beyond a strip at a station of the route. `leeways`: their least leeway on each side; `None` where the turn's area
+    /// counts. A body between two stations has its leeway against an edge between theirs, so the stations beside count, too.
+    fn beyond(&self, k: usize, leeways: Option<[Option<f64>; 2]>) -> Option<Beyond> {
+        let at = k - self.first;
+        let near = self.stations.get(at.saturating_sub(1)..(at + 2).min(self.stations.len()))?;
+        let Some(known) = near.iter().copied().collect::<Option<Vec<StationStrips>>>() else {
             // Nothing is known of the lanes. The vehicle may be anywhere in the strip.
-            let by_m = *self.widths_m.get(k - self.first)?;
-            return Some(Beyond { strip: Policy::Carriageway, by_m, side: Side::Left });
+            return Some(Beyond { strip: Policy::Carriageway, by_m: *self.widths_m.get(at)?, side: Side::Left });
         };
-        let [left, right] = body.unwrap_or([Some(strips.turn[0]), Some(strips.turn[1])]);
+        let edges = |of: fn(&StationStrips) -> StripEdges| known.iter().map(of).reduce(StripEdges::most);
+        let (edges, leeways) = match leeways {
+            Some(leeways) => (edges(|strips| strips.corridor_beyond)?, leeways),
+            None => (edges(|strips| strips.turn_beyond)?, [Some(0.0); 2]),
+        };
         let over = |edges: [f64; 2], strip: Policy| {
-            let left = left.map(|m| Beyond { strip, by_m: m - edges[0], side: Side::Left });
-            let right = right.map(|m| Beyond { strip, by_m: edges[1] - m, side: Side::Right });
-            let sides = [left, right].into_iter().flatten();
+            let side = |of: usize, side: Side| Some(Beyond { strip, by_m: edges[of] - leeways[of]?, side });
+            let sides = [side(0, Side::Left), side(1, Side::Right)].into_iter().flatten();
             sides.max_by(|a, b| a.by_m.total_cmp(&b.by_m)).filter(|beyond| beyond.by_m > LEAST_M)
         };
-        over(strips.direction, Policy::Carriageway).or_else(|| over(strips.lane, Policy::Direction))
+        over(edges.direction, Policy::Carriageway).or_else(|| over(edges.lane, Policy::Direction))
     }
 }
 
@@ -271,11 +286,22 @@ fn has_surface(network: &Network, [from, to]: [EdgeNo; 2]) -> bool {
     nodes.into_iter().flatten().any(|node| !network.site.surfaces(node).is_empty())
 }
 
-/// The strips at a station of a line, as seen from a place `aside_m` to the left of it. Of the stations beside it the narrowest counts.
+/// A place beside a line.
+#[derive(Debug, Clone, Copy)]
+struct LinePlace {
+    /// The nearest station.
+    station: usize,
+    /// How far ahead of that station the place is, stations; negative: behind it.
+    ahead: f64,
+    /// How far to the left of the line it is, metres.
+    aside_m: f64,
+}
+
+/// The strips at a place of the route beside a line, where the route's corridor has these half-widths.
 fn strips_at(
     line: &StrokeLine,
-    station: usize,
-    aside_m: f64,
+    place: LinePlace,
+    half_widths: [f64; 2],
     own: Strip,
     section: &CrossSection,
     turn_strip: Policy,
@@ -283,24 +309,32 @@ fn strips_at(
     let lane = section.lane?;
     // A lane may lie outside of what counts as its direction. What the vehicle may use there is no other lane.
     let direction = section.direction.unwrap_or(lane);
-    let direction =
-        Strip { left_m: direction.left_m.max(lane.left_m), right_m: direction.right_m.min(lane.right_m), ..direction };
-    let near = station.saturating_sub(1)..(station + 2).min(line.stations());
-    let narrowest = |part: Strip| {
-        let edges = near.clone().filter_map(|k| line.edges_of(k, own, part));
-        edges.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|edges| edges.map(|m| m - aside_m))
+    let direction = outer(direction, lane);
+    let turn = outer(section.strip(turn_strip).unwrap_or(own), own);
+    // Edges at the place, between the stations before and behind it.
+    let edges = |part: Strip| {
+        let other = if place.ahead < 0.0 { place.station.saturating_sub(1) } else { place.station + 1 };
+        let here = line.edges_of(place.station, own, part)?;
+        let there = line.edges_of(other.min(line.stations() - 1), own, part)?;
+        let share = place.ahead.abs().min(1.0);
+        Some([0, 1].map(|side| here[side] + share * (there[side] - here[side]) - place.aside_m))
     };
-    let widest = |part: Strip| {
-        let edges = near.clone().filter_map(|k| line.edges_of(k, own, part));
-        edges.reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])]).map(|edges| edges.map(|m| m - aside_m))
+    let (lane, direction, turn) = (edges(lane)?, edges(direction)?, edges(turn)?);
+    let beyond = |outer: [f64; 2]| {
+        let over = |inner: [f64; 2]| [outer[0] - inner[0], inner[1] - outer[1]];
+        StripEdges { lane: over(lane), direction: over(direction) }
     };
-    let turn = section.strip(turn_strip).unwrap_or(own);
-    let turn = Strip { left_m: turn.left_m.max(own.left_m), right_m: turn.right_m.min(own.right_m), ..turn };
-    Some(StationStrips { lane: narrowest(lane)?, direction: narrowest(direction)?, turn: widest(turn)? })
+    let corridor = [half_widths[0], -half_widths[1]];
+    Some(StationStrips { corridor_beyond: beyond(corridor), turn_beyond: beyond(turn).most(beyond(corridor)) })
 }
 
-/// For each station of the route, the nearest station of a line, and how far to its left the route is there, metres.
-fn on_line(path: &RoutePath, stations: Range<usize>, line: &StrokeLine) -> Result<Vec<(usize, f64)>, FrameError> {
+/// The outer edges of two strips.
+fn outer(a: Strip, b: Strip) -> Strip {
+    Strip { left_m: a.left_m.max(b.left_m), right_m: a.right_m.min(b.right_m), ..a }
+}
+
+/// For each station of the route, its place beside a line.
+fn on_line(path: &RoutePath, stations: Range<usize>, line: &StrokeLine) -> Result<Vec<LinePlace>, FrameError> {
     let (corridor, own) = (&path.corridor, &line.made.corridor);
     let metres: Vec<[f64; 2]> = stations.map(|k| [corridor.x[k], corridor.y[k]]).collect();
     let degrees = path.frame.inverse(&metres)?.into_iter().map(|[lon, lat]| (lon, lat)).collect();
@@ -316,7 +350,8 @@ fn on_line(path: &RoutePath, stations: Range<usize>, line: &StrokeLine) -> Resul
         let station = candidates.min_by(|&a, &b| away(at, a).total_cmp(&away(at, b))).unwrap_or(0);
         known = Some(station);
         let (sin, cos) = own.heading[station].sin_cos();
-        out.push((station, (at[1] - own.y[station]) * cos - (at[0] - own.x[station]) * sin));
+        let [x, y] = [at[0] - own.x[station], at[1] - own.y[station]];
+        out.push(LinePlace { station, ahead: (x * cos + y * sin) / own.spacing_m, aside_m: y * cos - x * sin });
     }
     Ok(out)
 }

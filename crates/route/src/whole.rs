@@ -10,9 +10,10 @@ use super::driver::Driver;
 use super::obstacles::Refutation;
 use super::pieces::{Choices, Menu, Strokes, TurnEnds, Turns};
 use super::roads::Roads;
+use super::rungs::{Raised, Rungs};
 use super::strip_use::StripUse;
 use crate::corridor::Corridor;
-use crate::network::{EdgeNo, offset_m};
+use crate::network::{EdgeNo, Network, offset_m};
 use crate::osm::LonLat;
 use crate::stet::{self, Certificate, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -24,7 +25,7 @@ const TURN_REACH_M: f64 = 120.0;
 const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
-/// How often places of one way are raised by a rung.
+/// How often what fails on one way is raised.
 const MOST_RAISED: usize = 40;
 
 /// Certifies ways of one vehicle. It keeps the strokes and turns that it has made.
@@ -79,12 +80,10 @@ impl Whole {
         self.forget_beside(&edges);
     }
 
-    /// Raises a place of a way and the road beside it by one rung. Returns whether anything stands higher now.
-    fn raise(&mut self, drive: &Drive, at: PartKind) -> bool {
+    /// Changes strips as `raise` does. Returns whether anything stands higher now.
+    fn raise(&mut self, raise: impl FnOnce(&mut Rungs, &Network) -> Raised) -> bool {
         let mut rungs = self.strokes.rungs().clone();
-        let network = &self.roads.network;
-        let length_m = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
-        let raised = rungs.raise(drive, at, &length_m);
+        let raised = raise(&mut rungs, &self.roads.network);
         if raised.is_empty() {
             return false;
         }
@@ -94,6 +93,41 @@ impl Whole {
         self.forget_beside(&edges);
         self.raised.extend(edges);
         true
+    }
+
+    /// Certifies a way on strips that are as narrow as it can be: where it fails, roads become wider and turns climb.
+    fn climb(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
+        self.begin_rungs();
+        for _ in 0..MOST_RAISED {
+            let path = match self.joined(way, stop)? {
+                Ok(path) => path,
+                Err(refutation) => {
+                    let at = refutation.at;
+                    match self.raise(|rungs, network| rungs.raise(network, way.drive, at, f32::MAX)) {
+                        true => continue,
+                        false => return Ok(Err(refutation)),
+                    }
+                }
+            };
+            let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+            let results = stet::certify_parts(&path.corridor, model, &parts(&path), options, stop)?;
+            let of_parts: Vec<_> = path.parts.iter().map(|part| part.kind).zip(results).collect();
+            if of_parts.iter().all(|(_, result)| result.safe()) {
+                let refutation = match self.certify(way, stop)? {
+                    Ok(certified) => return Ok(Ok(certified)),
+                    Err(refutation) => refutation,
+                };
+                let at = refutation.at;
+                match self.raise(|rungs, network| rungs.raise(network, way.drive, at, 0.0)) {
+                    true => continue,
+                    false => return Ok(Err(refutation)),
+                }
+            }
+            if !self.raise(|rungs, network| rungs.raise_failing(network, &of_parts)) {
+                return Ok(Err(worst(&of_parts)));
+            }
+        }
+        self.certify(way, stop)
     }
 
     /// Forgets the turns near edges whose strips have changed.
@@ -140,17 +174,17 @@ impl Whole {
     ) -> Result<(Option<CertifiedWay>, Vec<Refutation>), Stopped> {
         self.menu.begin();
         let mut failed: Vec<Refutation> = Vec::new();
-        let mut raised = 0;
+        if !self.driver.permits.rungs.is_level() {
+            return Ok(match self.climb(way, stop)? {
+                Ok(certified) => (Some(certified), failed),
+                Err(refutation) => (None, vec![refutation]),
+            });
+        }
         for strung in 1.. {
             let refutation = match self.certify(way, stop)? {
                 Ok(certified) => return Ok((Some(certified), failed)),
                 Err(refutation) => refutation,
             };
-            // What holds on one strip everywhere need not hold where strips change.
-            if raised < MOST_RAISED && self.raise(way.drive, refutation.at) {
-                raised += 1;
-                continue;
-            }
             let another = match (&refutation.assembly, refutation.at) {
                 // All pairs of paths of the two turns were tried.
                 (Some(AssemblyError::Overlap { .. }), _) => false,
@@ -272,6 +306,19 @@ impl Whole {
 fn near(a: LonLat, b: LonLat) -> bool {
     let [east_m, north_m] = offset_m(a, b);
     east_m.hypot(north_m) < BESIDE_M
+}
+
+/// The refutation of a way at its worst part.
+fn worst(parts: &[(PartKind, SpanResult)]) -> Refutation {
+    let rsc_m = |result: &SpanResult| result.rsc_m.unwrap_or(f64::NEG_INFINITY);
+    let failing = parts.iter().filter(|(_, result)| !result.safe());
+    let worst = failing.min_by(|a, b| rsc_m(&a.1).total_cmp(&rsc_m(&b.1)));
+    Refutation {
+        at: worst.map_or(PartKind::Edge(EdgeNo::new(0)), |worst| worst.0),
+        result: worst.and_then(|(_, result)| result.rsc_m.zip(result.hinge_margin_rad)),
+        assembly: None,
+        left_out: false,
+    }
 }
 
 /// The stations of a path's parts.

@@ -164,6 +164,11 @@ impl Strip {
     pub fn width_m(&self) -> f32 {
         self.left_m - self.right_m
     }
+
+    /// The room to the left and to the right of the strip within another one, metres.
+    fn room_within(&self, other: Self) -> [f32; 2] {
+        [other.left_m - self.left_m, self.right_m - other.right_m].map(|m| m.max(0.0))
+    }
 }
 
 /// The width that counts.
@@ -209,15 +214,33 @@ impl CrossSection {
         }
     }
 
-    /// The section of a road on which the vehicle may use the strip of `policy` where a narrower one is asked for. A strip without usable
-    /// width opens nothing.
+    /// How much wider the strip of `top` is than that of `base`, metres.
     #[must_use]
-    pub fn opened_to(self, policy: Policy) -> Self {
-        let opened = |own: Option<Strip>, of: Policy| if of < policy { self.strip(policy).or(own) } else { own };
-        Self {
-            lane: opened(self.lane, Policy::Lane),
-            direction: opened(self.direction, Policy::Direction),
-            carriageway: self.carriageway,
+    pub fn room_m(&self, base: Policy, top: Policy) -> f32 {
+        self.strip(base).zip(self.strip(top)).map_or(0.0, |(own, most)| own.room_within(most).iter().sum())
+    }
+
+    /// The section of a road on which the strip of `base` is wider by `more_m`, metres, but nowhere beyond that of `top`. It becomes wider on
+    /// the side with more room first.
+    #[must_use]
+    pub fn widened(self, base: Policy, top: Policy, more_m: f32) -> Self {
+        let (Some(own), Some(most)) = (self.strip(base), self.strip(top)) else { return self };
+        let room = own.room_within(most);
+        let first = usize::from(room[1] > room[0]);
+        let mut more = [0.0; 2];
+        more[first] = more_m.clamp(0.0, room[first]);
+        more[1 - first] = (more_m - more[first]).clamp(0.0, room[1 - first]);
+        let source = own.source.min(most.source);
+        let strip = Strip { left_m: own.left_m + more[0], right_m: own.right_m - more[1], source };
+        let around = |other: Strip| Strip {
+            left_m: other.left_m.max(strip.left_m),
+            right_m: other.right_m.min(strip.right_m),
+            source: other.source.min(source),
+        };
+        match base {
+            Policy::Lane => Self { lane: Some(strip), direction: self.direction.map(around), ..self },
+            Policy::Direction => Self { direction: Some(strip), ..self },
+            Policy::Carriageway => self,
         }
     }
 }
