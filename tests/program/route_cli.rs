@@ -22,7 +22,10 @@ fn routes_are_told_written_verified_or_explained() {
     let geojson = place.netcert(&format!("route --vehicle AU-ATRIPLE53 {ALONG} --format geojson")).succeeds().json();
     let features = geojson["features"].as_array().unwrap();
     assert_eq!(features[0]["properties"]["kind"], "route");
-    assert!(features.len() > 1 && features[1..].iter().all(|f| f["properties"]["rsc_m"].is_number()));
+    let is_use = |feature: &&serde_json::Value| feature["properties"]["feature"] == "use";
+    let (uses, parts): (Vec<_>, Vec<_>) = features[1..].iter().partition(is_use);
+    assert!(!parts.is_empty() && parts.iter().all(|f| f["properties"]["rsc_m"].is_number()));
+    assert!(uses.iter().all(|f| f["properties"]["beyond_m"].as_f64().is_some_and(|m| m > 0.0)));
 
     place
         .netcert(&format!("route --vehicle AU-ATRIPLE53 {ROUND_A_CORNER}"))

@@ -7,18 +7,29 @@ use serde_json::Value;
 
 use crate::serve::http::Server;
 
-const FROM_TO: &str = "--from 0.001,0 --to 0.006,0";
+const FROM_TO: &str = "--from 0.0005,0 --to 0.0065,0";
 
-/// A straight road of 780 m at the equator, with 120 m of 5.4 m between roads of 7 m: a lane of 2.7 m is too narrow for AU-SEMI19.
+/// A straight road of 780 m at the equator, with side roads and 120 m of 5.4 m between roads of 7 m: a lane of 2.7 m is too narrow for
+/// AU-SEMI19.
 fn bottleneck() -> WorkFolder {
-    let at = |id, lon_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7: 0 }, tags: Vec::new() };
-    let nodes = [at(1, 0), at(2, 30_000), at(3, 40_800), at(4, 70_000)];
-    let way = |id, refs: &[i64], width: &str| {
-        let tags = [("highway", "secondary"), ("lanes", "2"), ("width", width)];
+    let at = |id, lon_e7, lat_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7 }, tags: Vec::new() };
+    let main =
+        [(1, 0), (2, 15_000), (3, 30_000), (4, 40_800), (5, 55_000), (6, 70_000)].map(|(id, lon)| at(id, lon, 0));
+    let nodes = [&main[..], &[at(7, 15_000, -9_000), at(8, 55_000, -9_000)]].concat();
+    let way = |id, refs: &[i64], tags: &[(&str, &str)]| {
         let tags = tags.iter().map(|&(key, value)| (key.to_owned(), value.to_owned())).collect();
         WayRecord { id, refs: refs.to_vec(), tags }
     };
-    let ways = [way(1, &[1, 2], "7"), way(2, &[2, 3], "5.4"), way(3, &[3, 4], "7")];
+    let wide = [("highway", "secondary"), ("lanes", "2"), ("width", "7")];
+    let narrow = [("highway", "secondary"), ("lanes", "2"), ("width", "5.4")];
+    let side = [("highway", "residential")];
+    let ways = [
+        way(1, &[1, 2, 3], &wide),
+        way(2, &[3, 4], &narrow),
+        way(3, &[4, 5, 6], &wide),
+        way(4, &[2, 7], &side),
+        way(5, &[5, 8], &side),
+    ];
     let folder = WorkFolder::empty().file("road.osm.pbf", write_extract(&nodes, &ways));
     folder.netcert("ingest road.osm.pbf --db demo.gpkg --vehicle AU-SEMI19").succeeds();
     folder
@@ -44,7 +55,7 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
         .succeeds()
         .tells("AU-SEMI19 is not certified in demo.gpkg under the direction policy yet: doing it now")
         .tells("AU-SEMI19 is not certified in demo.gpkg under the carriageway policy yet: doing it now")
-        .shows("a certified route, 0.6 km")
+        .shows("a certified route, 0.7 km")
         .shows("Beyond its own lane:")
         .shows("the oncoming lane")
         .shows("Oncoming traffic must be held back there; nothing here says")
@@ -68,9 +79,9 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
         );
         let beyond_m = used["beyond_m"].as_f64().unwrap();
         assert!(beyond_m > 0.0 && beyond_m < 1.5, "{used}");
-        // The narrow part lies 223 to 343 m from the beginning.
+        // The narrow part lies 278 to 398 m from the beginning.
         assert!(
-            used["from_m"].as_f64().unwrap() > 223.0 - 80.0 && used["to_m"].as_f64().unwrap() < 343.0 + 80.0,
+            used["from_m"].as_f64().unwrap() > 278.0 - 80.0 && used["to_m"].as_f64().unwrap() < 398.0 + 80.0,
             "{used}"
         );
     }
@@ -82,7 +93,7 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
     for (feature, used) in drawn.iter().zip(uses(route)) {
         let line = feature["geometry"]["coordinates"].as_array().unwrap();
         let lon = |at: usize| line[at][0].as_f64().unwrap();
-        let along_m = |lon: f64| (lon - 0.001) * 111_320.0;
+        let along_m = |lon: f64| (lon - 0.0005) * 111_320.0;
         assert!((along_m(lon(0)) - used["from_m"].as_f64().unwrap()).abs() < 3.0, "{feature}");
         assert!((along_m(lon(line.len() - 1)) - used["to_m"].as_f64().unwrap()).abs() < 3.0, "{feature}");
     }
@@ -96,7 +107,7 @@ fn the_server_climbs_as_the_verb_does_and_refuses_what_it_lacks() {
     );
     let told = place.netcert(&climbing).succeeds().json();
     let server = Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0");
-    let ask = "/api/route?vehicle=AU-SEMI19&policy=lane&from=0.001,0&to=0.006,0&drive=none&conditions=none";
+    let ask = "/api/route?vehicle=AU-SEMI19&policy=lane&from=0.0005,0&to=0.0065,0&drive=none&conditions=none";
     assert_eq!(server.json(ask)["routes"].as_array().unwrap().len(), 0);
     let answer = server.json(&format!("{ask}&at_most=carriageway"));
     assert_eq!((&answer["policy"], &answer["at_most"]), (&"lane".into(), &"carriageway".into()));

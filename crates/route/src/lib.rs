@@ -20,6 +20,9 @@
 //! | `whole` | the certificate of a whole way, and where it fails |
 //! | `route` | a certified route, and its parts |
 //! | `rungs` | the strip on which each edge and turn is used |
+//! | `ladder` | one vehicle with its permits under several policies |
+//! | `climb` | what stands higher on a way that fails |
+//! | `turn_ends` | the edges that name a turn |
 //! | `rung_prices` | what it costs a route to use more than its own lane |
 //! | `strip_use` | where a certified route uses more than its own lane, and how far |
 //! | `title` | titles and places of edges, turns and passages |
@@ -50,6 +53,7 @@ mod assemble;
 mod bans;
 mod best;
 mod blend;
+mod climb;
 mod conditional_search;
 mod conditions;
 mod database;
@@ -57,6 +61,7 @@ mod drive;
 mod driver;
 mod graph;
 mod grounds;
+mod ladder;
 mod nearest_road;
 mod obstacles;
 mod permits;
@@ -76,6 +81,7 @@ mod strip_use;
 mod survey;
 mod through;
 mod title;
+mod turn_ends;
 mod turning;
 mod whole;
 
@@ -87,10 +93,11 @@ pub use database::NoDriver;
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
+pub use ladder::{Ladder, UnlikeSets};
 pub use nearest_road::NearestRoad;
 pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
-pub use pieces::{Menu, NoTurns, Strokes, TurnEnds, TurnPiece, Turns};
+pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Unanswered};
 pub use reach::{Components, ReachableEdges, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
@@ -98,7 +105,7 @@ pub use report::{CONDITIONAL, condition_members, geojson, json, obstacle_members
 pub use roads::Roads;
 pub use route::{LimitedStretch, PartResult, Route};
 pub use rung_prices::{RungPrices, RungPricesError};
-pub use rungs::{Ladder, Rungs, UnlikeSets};
+pub use rungs::Rungs;
 pub use search::{FoundWay, Goal, SearchExtent, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper, foot};
 pub use speeds::{Measure, Speeds, SpeedsError};
@@ -107,4 +114,5 @@ pub use survey::{
     Opens, Pairs, PlacePair, SURVEY_COLUMNS, SURVEY_SCOPE, Survey, SurveyLine, SurveyStep, survey_pairs, survey_region,
 };
 pub use title::{place, title};
+pub use turn_ends::TurnEnds;
 pub use turning::MadeTurns;

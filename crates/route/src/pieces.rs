@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::roads::Roads;
 use super::rungs::Rungs;
+use super::turn_ends::TurnEnds;
 use crate::corridor::{AreaSpan, Corridor, Frame};
 use crate::network::{Edge, EdgeNo, Movement, Network};
 use crate::osm::facts::Policy;
@@ -105,21 +106,6 @@ impl Made {
 
     fn of_code(&self, code: i64) -> Option<Arc<TurnPiece>> {
         self.counted().iter().chain(&self.coded).find(|piece| piece.code == code).cloned()
-    }
-}
-
-/// The edges before and after a turn or passage, which tell it from every other one of a way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct TurnEnds {
-    /// The edge that the vehicle comes from.
-    pub from: EdgeNo,
-    /// The edge that the vehicle goes into.
-    pub to: EdgeNo,
-}
-
-impl TurnEnds {
-    pub(super) fn of(movement: &Movement) -> Self {
-        Self { from: movement.from, to: movement.to }
     }
 }
 

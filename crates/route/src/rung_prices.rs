@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::graph::{Access, BARRED, Graph};
-use super::pieces::TurnEnds;
 use super::rungs::Rungs;
 use super::speeds::Measure;
+use super::turn_ends::TurnEnds;
 use crate::network::EdgeNo;
 use crate::osm::facts::{Policy, RoadClass};
 use crate::words::Named as _;

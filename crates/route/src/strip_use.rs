@@ -11,7 +11,8 @@ use netcert_base::leeway::NOTHING_M;
 use netcert_base::named;
 
 use super::assemble::{PartKind, RoutePart, RoutePath};
-use super::pieces::{Strokes, TurnEnds};
+use super::pieces::Strokes;
+use super::turn_ends::TurnEnds;
 use crate::corridor::FrameError;
 use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{CrossSection, Oneway, Policy, Strip};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::driver::Driver;
-use super::pieces::{Strokes, TurnEnds, TurnPiece, Turns};
+use super::pieces::{Strokes, TurnPiece, Turns};
+use super::turn_ends::TurnEnds;
 use crate::certify::best_of;
 use crate::network::{EdgeNo, Movement};
 use crate::osm::facts::Policy;

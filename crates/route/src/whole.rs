@@ -5,13 +5,15 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use super::assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, movement};
+use super::climb::Raised;
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
-use super::pieces::{Choices, Menu, Strokes, TurnEnds, Turns};
+use super::pieces::{Choices, Menu, Strokes, Turns};
 use super::roads::Roads;
-use super::rungs::{Raised, Rungs};
+use super::rungs::Rungs;
 use super::strip_use::StripUse;
+use super::turn_ends::TurnEnds;
 use crate::corridor::Corridor;
 use crate::network::{EdgeNo, Network, offset_m};
 use crate::osm::LonLat;

@@ -332,7 +332,7 @@ fn what_cannot_be_answered_is_refused_with_its_place() {
     let next = link(&first, "next").unwrap();
     assert_eq!(server.get(&next).status, 200);
     std::thread::sleep(std::time::Duration::from_millis(20));
-    server.place.sql("UPDATE run SET parameters = parameters");
+    server.place.sql("UPDATE run SET parameters = parameters || ' '");
     let problem = server.problem(&next, 409);
     assert_eq!(problem["type"], "urn:netcert:problem:changed");
     assert_eq!(geojson(&server.get(&format!("{items}?limit=10")))["features"], first["features"]);

@@ -9,8 +9,8 @@ use super::sections::Section;
 use crate::assemble::{DrivenWay, PartKind};
 use crate::graph::Access;
 use crate::obstacles::Refutation;
-use crate::pieces::TurnEnds;
 use crate::stop::{Stop, Stopped};
+use crate::turn_ends::TurnEnds;
 use crate::turning::MadeTurns;
 use crate::whole::{Looked, Whole};
 
