@@ -180,48 +180,6 @@ fn a_ladder_of_one_rung_answers_as_a_planner_without_one() {
     assert_eq!(climbed.routes[0].cost, route.cost);
 }
 
-/// From `A` to `D` there is a short narrow road and a detour that is wide.
-#[test]
-fn a_detour_in_the_own_lane_is_better_than_the_oncoming_lane() {
-    let nodes = [
-        ('Z', [-300.0, 0.0]),
-        ('A', [0.0, 0.0]),
-        ('B', [300.0, 0.0]),
-        ('D', [600.0, 0.0]),
-        ('Y', [900.0, 0.0]),
-        ('U', [0.0, -200.0]),
-        ('V', [600.0, -200.0]),
-    ];
-    let wide = "highway=secondary lanes=2 width=14";
-    let map = AsciiMap::placed(&nodes)
-        .way("ZA", wide)
-        .way("AB", NARROW)
-        .way("BD", NARROW)
-        .way("AU", wide)
-        .way("UV", wide)
-        .way("VD", wide)
-        .way("DY", wide);
-    let region = region(&map, 30.0);
-    let mut planner = climber(&region, &[Policy::Lane, Policy::Direction, Policy::Carriageway]);
-    let answer = ask(&region, &mut planner, ["ZA", "DY"]);
-    let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
-    let over = ascii_map::edge(&region.network, "AU");
-    let short = ascii_map::edge(&region.network, "AB");
-    let drives = |route: &Route, edge| route.drive.edges.contains(&edge);
-    assert!(drives(route, over) && !drives(route, short), "{:?} {:?}", route.drive, answer.refuted);
-    // Without the price of the oncoming lane the short way wins.
-    let free = include_str!("../../data/rungs.toml").lines().map(|line| match line.split_once(" = ") {
-        Some((name, _)) if !line.starts_with('#') => format!("{name} = 0.0\n"),
-        _ => format!("{line}\n"),
-    });
-    let prices = RungPrices::from_toml(&free.collect::<String>()).unwrap();
-    let all = [Policy::Lane, Policy::Direction, Policy::Carriageway];
-    let speeds = Speeds::builtin().unwrap();
-    let mut planner = Planner::climbing(&region.roads, &ladder(&region, &all), &speeds, Measure::Time, &prices);
-    let answer = ask(&region, &mut planner, ["ZA", "DY"]);
-    assert!(drives(&answer.routes[0], short), "{:?}", answer.routes[0].drive);
-}
-
 #[test]
 fn sets_of_other_settings_are_no_ladder() {
     let region = region(&bottleneck(), 6.0);

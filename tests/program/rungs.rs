@@ -58,8 +58,8 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
         .shows("a certified route, 0.7 km")
         .shows("Beyond its own lane:")
         .shows("the oncoming lane")
-        .shows("Oncoming traffic must be held back there; nothing here says")
-        .shows("(lane policy, where that is not enough up to carriageway,");
+        .shows("Beyond all lanes of its direction for")
+        .shows("(lane policy, where that is not enough up to");
     // The certificate is checked as any other, and a signature covers what it uses.
     place.netcert("verify way.json").succeeds();
     let file: Value = serde_json::from_slice(&place.read("way.json")).unwrap();

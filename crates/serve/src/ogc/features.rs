@@ -6,7 +6,7 @@ use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::cql2::{Attribute, AttributeKind};
 use super::{ROOT, shortened};
-use crate::osm::{LonLat, rounded};
+use crate::osm::LonLat;
 use crate::rows::{Cell, Column, ColumnKind, EdgeRow, SetKey, TurnRow};
 use crate::stop::Stop;
 use crate::store::PageQuery;
@@ -175,7 +175,7 @@ fn junction(area: &JunctionArea) -> KeyedFeature {
     let roads = i64::try_from(area.roads).ok();
     let source = area.kerb_source.map(KerbSource::name);
     let cells = [Cell::Integer(Some(node)), Cell::Integer(roads), Cell::Text(source)];
-    let ring = |ring: &Vec<LonLat>| ring.iter().copied().map(place).collect::<Vec<_>>();
+    let ring = |ring: &Vec<LonLat>| ring.iter().map(|place| json!(place.degrees())).collect::<Vec<_>>();
     let polygons: Vec<Vec<Vec<Value>>> = area.polygons.iter().map(|rings| rings.iter().map(ring).collect()).collect();
     let geometry = json!({"type": "MultiPolygon", "coordinates": polygons});
     keyed(node, node, geometry, properties(&JUNCTION_COLUMNS, &cells))
@@ -192,14 +192,8 @@ fn keyed(key: i64, id: i64, geometry: Value, properties: Map<String, Value>) -> 
     KeyedFeature { key, feature: Value::Object(feature) }
 }
 
-/// Longitude and latitude in the seven decimals that the map has.
-fn place(place: LonLat) -> Value {
-    let (lon, lat) = place.degrees();
-    json!(rounded([lon, lat]))
-}
-
 fn line_string(line: &[LonLat]) -> Value {
-    let coordinates: Vec<Value> = line.iter().copied().map(place).collect();
+    let coordinates: Vec<Value> = line.iter().map(|place| json!(place.degrees())).collect();
     json!({"type": "LineString", "coordinates": coordinates})
 }
 
