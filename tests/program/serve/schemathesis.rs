@@ -36,7 +36,7 @@ fn with_real_ids(document: &mut Value, server: &Server) {
     let times = ["2026-11-21T08:00:00Z", "2026-11-21T08:00:00.5+01:00/..", "2026-11-20/2026-11-21"];
     let real = |name: &str, path: &str| match name {
         "collectionId" => Some(json!(collections)),
-        "filter" => Some(json!(filters)),
+        "filter" => Some(json!([filters[0], filters[1], filters[2], true, false])),
         "datetime" => Some(json!(times)),
         "vehicle" | "relative_to" => Some(json!([VEHICLE, "AU-ATRIPLE53"])),
         "id" if path.contains("vehicles") => Some(json!([VEHICLE])),
@@ -62,7 +62,11 @@ fn with_real_ids(document: &mut Value, server: &Server) {
             parameter["schema"].as_object_mut().unwrap().remove("maximum");
         }
         if let Some(values) = real(&name, path) {
-            parameter["schema"] = json!({"type": "string", "enum": values});
+            // A condition may be TRUE or FALSE alone, so a boolean is no value of a wrong type.
+            parameter["schema"] = match name == "filter" {
+                true => json!({"enum": values}),
+                false => json!({"type": "string", "enum": values}),
+            };
         }
     };
     for parameter in document["components"]["parameters"].as_object_mut().unwrap().values_mut() {
