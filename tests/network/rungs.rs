@@ -180,6 +180,41 @@ fn a_ladder_of_one_rung_answers_as_a_planner_without_one() {
     assert_eq!(climbed.routes[0].cost, route.cost);
 }
 
+/// From `A` to `D` there is a narrow road straight on, and a wide one that is a little longer and needs the oncoming lane at its two turns
+/// alone.
+#[test]
+fn a_detour_in_the_own_lane_is_better_than_the_oncoming_lane() {
+    let wide = "highway=secondary lanes=2 width=9";
+    let nodes = [
+        ('Z', [-300.0, 0.0]),
+        ('A', [0.0, 0.0]),
+        ('B', [300.0, 0.0]),
+        ('D', [600.0, 0.0]),
+        ('Y', [900.0, 0.0]),
+        ('U', [100.0, -30.0]),
+        ('V', [500.0, -30.0]),
+    ];
+    let map = AsciiMap::placed(&nodes).way("ZA", wide).way("ABD", NARROW).way("AUVD", wide).way("DY", wide);
+    let region = region(&map, 4.5);
+    let ladder = ladder(&region, &[Policy::Lane, Policy::Direction, Policy::Carriageway]);
+    // The width of the narrowest road of the route, metres.
+    let narrowest_m = |prices: &RungPrices| {
+        let speeds = Speeds::builtin().unwrap();
+        let mut planner = Planner::climbing(&region.roads, &ladder, &speeds, Measure::Time, prices);
+        let answer = ask(&region, &mut planner, ["ZA", "DY"]);
+        let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
+        let roads = route.drive.edges.iter().map(|edge| region.network.section(&region.network.edges[edge.index()]));
+        roads.map(|section| section.carriageway.unwrap().width_m()).fold(f32::INFINITY, f32::min)
+    };
+    // 600 m of the oncoming lane cost more than it costs at two turns. Where it costs nothing, the shorter way wins.
+    let free = include_str!("../../data/rungs.toml").lines().map(|line| match line.split_once(" = ") {
+        Some((name, _)) if !line.starts_with('#') => format!("{name} = 0.0\n"),
+        _ => format!("{line}\n"),
+    });
+    let free = RungPrices::from_toml(&free.collect::<String>()).unwrap();
+    assert_eq!([narrowest_m(&RungPrices::builtin().unwrap()), narrowest_m(&free)], [9.0, 5.4]);
+}
+
 #[test]
 fn sets_of_other_settings_are_no_ladder() {
     let region = region(&bottleneck(), 6.0);

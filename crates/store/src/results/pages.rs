@@ -308,7 +308,8 @@ mod tests {
         for lat in [0.0, 49.0, -70.0] {
             let own = Bounds { west: 8.0, south: lat, east: 8.1, north: lat + 0.1 };
             let wide = widened(own, 1000.0);
-            let metre = 111_320.0 * (lat.abs() + 0.1_f64).to_radians().cos();
+            // A degree of longitude is shortest where the box is farthest from the equator.
+            let metre = 111_320.0 * own.south.abs().max(own.north.abs()).to_radians().cos();
             assert!((own.west - wide.west) * metre >= 1000.0 && (wide.east - own.east) * metre >= 1000.0);
             assert!((wide.north - own.north) * 110_574.0 >= 1000.0 && (own.south - wide.south) * 110_574.0 >= 1000.0);
         }
