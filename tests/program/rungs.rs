@@ -43,7 +43,11 @@ fn uses(route: &Value) -> &Vec<Value> {
 fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
     let place = bottleneck();
     let level = format!("route --db demo.gpkg --vehicle AU-SEMI19 {FROM_TO} --certified-only");
-    place.netcert(&level).succeeds().shows("no certified route").shows("(lane policy, every turn's kerbs");
+    let refused = place.netcert(&level).succeeds();
+    refused
+        .shows("no certified route")
+        .shows("`--at-most carriageway` would use more")
+        .shows("(lane policy, every turn's kerbs");
     place
         .netcert(&format!("{level} --at-most lane"))
         .fails()

@@ -5,14 +5,8 @@ use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use crate::update::{place_of, sql};
 use netcert_testing::program::WorkFolder;
 
-#[test]
-fn a_lane_that_both_directions_share_is_told() {
-    let roads: [&[(&str, &str)]; 4] = [
-        &[("highway", "service")],
-        &[("highway", "service"), ("oneway", "yes")],
-        &[("highway", "secondary"), ("lanes", "2")],
-        &[("highway", "secondary"), ("lanes", "1")],
-    ];
+/// `lanes.osm.pbf` with straight roads of these tags, 150 m long and 100 m apart, whose ids count from 1.
+fn drawn(roads: &[&[(&str, &str)]]) -> WorkFolder {
     let mut nodes = Vec::new();
     let mut ways = Vec::new();
     for (id, tags) in (1_i64..).zip(roads) {
@@ -21,7 +15,18 @@ fn a_lane_that_both_directions_share_is_told() {
         let tags = tags.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
         ways.push(WayRecord { id, refs: vec![2 * id, 2 * id + 1], tags });
     }
-    let place = WorkFolder::empty().file("lanes.osm.pbf", write_extract(&nodes, &ways));
+    WorkFolder::empty().file("lanes.osm.pbf", write_extract(&nodes, &ways))
+}
+
+#[test]
+fn a_lane_that_both_directions_share_is_told() {
+    let roads: [&[(&str, &str)]; 4] = [
+        &[("highway", "service")],
+        &[("highway", "service"), ("oneway", "yes")],
+        &[("highway", "secondary"), ("lanes", "2")],
+        &[("highway", "secondary"), ("lanes", "1")],
+    ];
+    let place = drawn(&roads);
     place.netcert("ingest lanes.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --country DE --needs off").succeeds();
     for (way, shared) in [(1, true), (2, false), (3, false), (4, true)] {
         let column =
@@ -59,15 +64,7 @@ fn the_group_that_says_how_many_lanes_a_road_has_is_named() {
         &[("highway", "trunk"), ("oneway", "yes")],
         &[("highway", "primary")],
     ];
-    let mut nodes = Vec::new();
-    let mut ways = Vec::new();
-    for (id, tags) in (1_i64..).zip(roads) {
-        let places = [0.0, 150.0].map(|east_m| place_of(east_m, 100.0 * id as f64));
-        nodes.extend((2 * id..).zip(places).map(|(id, place)| NodeRecord { id, place, tags: Vec::new() }));
-        let tags = tags.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-        ways.push(WayRecord { id, refs: vec![2 * id, 2 * id + 1], tags });
-    }
-    let place = WorkFolder::empty().file("lanes.osm.pbf", write_extract(&nodes, &ways));
+    let place = drawn(&roads);
     place.netcert("ingest lanes.osm.pbf --db demo.gpkg --vehicle US-WB67 --country US --needs off").succeeds();
     for (way, columns) in [
         (1, "2|3.35|assumed|6.7|assumed|6.7|assumed|"),

@@ -303,12 +303,11 @@ impl Leg {
         let (low, high) = (from.min(to), from.max(to).min(last_station));
         let mut samples = samples(corridor, low..high + 1, line.made.frame, frame)?;
         // As in the turns' own certificates, their strip counts before and after them.
-        let level = strokes.turn_params().strip.max(strokes.settings().policy);
         let metres = |stations: usize| stations as f64 * corridor.spacing_m;
         for (station, sample) in (low..).zip(&mut samples) {
             let opening = |turn: Option<&Between>, of: &dyn Fn(LengthClass) -> Opening| {
-                let strip = turn.map_or(level, |turn| turn.strip);
-                line.half_widths(strip, station, turn.map_or(Opening::NONE, |turn| of(turn.reach)))
+                let (strip, opening) = turn.map_or((Policy::Lane, Opening::NONE), |turn| (turn.strip, of(turn.reach)));
+                line.half_widths(strip, station, opening)
             };
             let after_turn = opening(before, &|reach| reach.opening_after(metres(station.saturating_sub(from))));
             let before_turn = opening(after, &|reach| reach.opening_before(metres(to.saturating_sub(station))));

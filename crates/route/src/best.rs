@@ -6,8 +6,8 @@ use crate::stop::Stop;
 
 impl Planner {
     /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
-    /// longer. A planner that climbs looks for conditions on the widest strip alone. A place that is near no safe road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks
-    /// the way.
+    /// longer. A planner that climbs looks for conditions on the widest strip alone. A place that is near no safe road may be near a
+    /// lawful one. Where `stop` is told during that search, the answer is what blocks the way.
     ///
     /// # Errors
     /// A place is near no road that the vehicle may use, or `stop` was told before it was known what blocks the way.

@@ -12,29 +12,25 @@ use crate::stet::SpanResult;
 const BESIDE_M: f64 = 30.0;
 
 impl Rungs {
-    /// Raises a place of a way and the road beside it: the turn by one rung, the roads by `missing_m`. Returns what stands higher now; there
-    /// is nothing if all stand on the top.
-    pub(super) fn raise(&mut self, network: &Network, drive: &Drive, at: PartKind, missing_m: f32) -> Raised {
+    /// Raises a place of a way and the road beside it: the turn by one rung, the roads by `missing_m`. Returns the edges that stand higher now,
+    /// or whose turns do; none if all stand on the top.
+    pub(super) fn raise(&mut self, network: &Network, drive: &Drive, at: PartKind, missing_m: f32) -> Vec<EdgeNo> {
         let (first, last, turn) = match at {
             PartKind::Edge(edge) => (edge, edge, None),
             PartKind::Turn { from, to } => (from, to, Some(TurnEnds { from, to })),
         };
-        let mut raised = Raised::default();
+        let mut raised = Vec::new();
         let length_m = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
-        for no in beside(drive, first, last, &length_m) {
-            let section = network.edges.get(no.index()).map(|edge| network.section(edge));
-            if section.is_some_and(|section| self.widen(no, &section, missing_m)) {
-                raised.edges.push(no);
-            }
-        }
-        raised.turns.extend(turn.filter(|&ends| self.raise_turn(ends)));
+        let near = beside(drive, first, last, &length_m);
+        raised.extend(near.into_iter().filter(|&edge| self.widen(network, edge, missing_m)));
+        raised.extend(turn.filter(|&ends| self.raise_turn(ends)).map(|_| [first, last]).into_iter().flatten());
         raised
     }
 
     /// Raises what fails on a way: of each run of failing parts the narrowest road that can become wider, else its turns, else the roads
-    /// beside the run. A road that only leads to a narrow one keeps its strip so.
-    pub(super) fn raise_failing(&mut self, network: &Network, parts: &[(PartKind, SpanResult)]) -> Raised {
-        let mut raised = Raised::default();
+    /// beside the run. A road that only leads to a narrow one keeps its strip so. Returns as [`Self::raise`].
+    pub(super) fn raise_failing(&mut self, network: &Network, parts: &[(PartKind, SpanResult)]) -> Vec<EdgeNo> {
+        let mut raised = Vec::new();
         let mut at = 0;
         for run in parts.chunk_by(|a, b| a.1.safe() == b.1.safe()) {
             let (from, to) = (at, at + run.len());
@@ -44,43 +40,35 @@ impl Rungs {
             }
             let missing_m = run.iter().filter_map(|(_, result)| result.rsc_m).fold(0.0, |most: f64, m| most.max(-m));
             let missing_m = 2.0 * missing_m as f32;
-            let mut roads: Vec<(f32, EdgeNo)> = run.iter().filter_map(|(kind, _)| self.width(network, *kind)).collect();
+            let mut roads: Vec<(f32, EdgeNo)> =
+                run.iter().filter_map(edge).filter_map(|edge| Some((self.width_m(network, edge)?, edge))).collect();
             roads.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let mut widen = |edge: EdgeNo| {
-                let section = network.edges.get(edge.index()).map(|edge| network.section(edge));
-                section.is_some_and(|section| self.widen(edge, &section, missing_m))
-            };
-            if let Some((_, edge)) = roads.into_iter().find(|(_, edge)| widen(*edge)) {
-                raised.edges.push(edge);
+            if let Some((_, edge)) = roads.into_iter().find(|(_, edge)| self.widen(network, *edge, missing_m)) {
+                raised.push(edge);
                 continue;
             }
-            let ends = |kind: PartKind| match kind {
+            let turns = run.iter().filter_map(|(kind, _)| match *kind {
                 PartKind::Turn { from, to } => Some(TurnEnds { from, to }),
                 PartKind::Edge(_) => None,
-            };
-            let turns: Vec<TurnEnds> = run.iter().filter_map(|(kind, _)| ends(*kind)).collect();
-            let turns: Vec<TurnEnds> = turns.into_iter().filter(|&ends| self.raise_turn(ends)).collect();
+            });
+            let turns: Vec<TurnEnds> = turns.filter(|&ends| self.raise_turn(ends)).collect();
             if !turns.is_empty() {
-                raised.turns.extend(turns);
+                raised.extend(turns.iter().flat_map(|ends| [ends.from, ends.to]));
                 continue;
             }
             let before = from.checked_sub(1).and_then(|before| parts.get(before));
-            for (kind, _) in before.into_iter().chain(parts.get(to)) {
-                let PartKind::Edge(edge) = *kind else { continue };
-                let section = network.edges.get(edge.index()).map(|edge| network.section(edge));
-                if section.is_some_and(|section| self.widen(edge, &section, missing_m)) {
-                    raised.edges.push(edge);
-                }
-            }
+            let beside = before.into_iter().chain(parts.get(to)).filter_map(edge);
+            raised.extend(beside.filter(|&edge| self.widen(network, edge, missing_m)));
         }
         raised
     }
+}
 
-    /// The width of a part that is an edge, as it counts, metres.
-    fn width(&self, network: &Network, kind: PartKind) -> Option<(f32, EdgeNo)> {
-        let PartKind::Edge(no) = kind else { return None };
-        let section = network.section(network.edges.get(no.index())?);
-        Some((self.width_m(no, section)?, no))
+/// The edge of a part that is no turn.
+fn edge((kind, _): &(PartKind, SpanResult)) -> Option<EdgeNo> {
+    match *kind {
+        PartKind::Edge(edge) => Some(edge),
+        PartKind::Turn { .. } => None,
     }
 }
 
@@ -108,17 +96,4 @@ fn beside(drive: &Drive, first: EdgeNo, last: EdgeNo, length_m: &dyn Fn(EdgeNo) 
     edges.sort_unstable();
     edges.dedup();
     edges
-}
-
-/// What stands on a higher rung than before.
-#[derive(Debug, Default)]
-pub(super) struct Raised {
-    pub(super) edges: Vec<EdgeNo>,
-    pub(super) turns: Vec<TurnEnds>,
-}
-
-impl Raised {
-    pub(super) fn is_empty(&self) -> bool {
-        self.edges.is_empty() && self.turns.is_empty()
-    }
 }

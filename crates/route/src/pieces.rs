@@ -284,9 +284,9 @@ impl Strokes {
         self.params.strip.max(self.rungs.turn(turn))
     }
 
-    /// Changes strips. The lines of the strokes that `edges` belong to are made again.
-    pub(super) fn change_rungs(&mut self, edges: &[EdgeNo], change: impl FnOnce(&mut Rungs)) {
-        change(&mut self.rungs);
+    /// Changes the strips of `edges` and of turns. The lines of the strokes that `edges` belong to are made again.
+    pub(super) fn put_rungs(&mut self, rungs: Rungs, edges: &[EdgeNo]) {
+        self.rungs = rungs;
         // An edge also lies in the approach of other strokes.
         let network = &self.roads.network;
         let on = |range: &Range<u32>| {

@@ -187,7 +187,6 @@ impl Planner {
         let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
-        self.whole.begin_rungs();
         let mut access = self.access.clone();
         self.next_route(&mut access, question, &mut answer, &|_| true)?;
         if !answer.routes.is_empty() {

@@ -8,7 +8,7 @@
 use rustc_hash::FxHashMap;
 
 use super::turn_ends::TurnEnds;
-use crate::network::EdgeNo;
+use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{CrossSection, Policy};
 use crate::words::Named as _;
 
@@ -65,8 +65,9 @@ impl Rungs {
         self.widened.get(&edge).map_or(section, |&more_m| section.widened(self.base, self.top, more_m))
     }
 
-    /// The width of an edge's road as it counts, metres. `section` is that of the map.
-    pub(super) fn width_m(&self, edge: EdgeNo, section: CrossSection) -> Option<f32> {
+    /// The width of an edge's road as it counts, metres.
+    pub(super) fn width_m(&self, network: &Network, edge: EdgeNo) -> Option<f32> {
+        let section = network.section(network.edges.get(edge.index())?);
         Some(self.section(edge, section).strip(self.base)?.width_m())
     }
 
@@ -86,8 +87,10 @@ impl Rungs {
     }
 
     /// Makes a road wider by what is missing and a little more, metres. Returns whether it could be.
-    pub(super) fn widen(&mut self, edge: EdgeNo, section: &CrossSection, missing_m: f32) -> bool {
-        let (room_m, more_m) = (section.room_m(self.base, self.top), self.widened.entry(edge).or_default());
+    pub(super) fn widen(&mut self, network: &Network, edge: EdgeNo, missing_m: f32) -> bool {
+        let Some(facts) = network.edges.get(edge.index()) else { return false };
+        let room_m = network.section(facts).room_m(self.base, self.top);
+        let more_m = self.widened.entry(edge).or_default();
         let raised = *more_m < room_m;
         if raised {
             *more_m = (*more_m + missing_m + MORE_M).min(room_m);
@@ -95,6 +98,13 @@ impl Rungs {
         raised
     }
 
+    /// The edges that stand, or whose turns stand, higher than in `permitted`, from which these rungs were raised.
+    pub(super) fn above(&self, permitted: &Self) -> Vec<EdgeNo> {
+        let raised = self.turns.iter().filter(|(ends, strip)| permitted.turn(**ends) != **strip);
+        self.widened.keys().copied().chain(raised.flat_map(|(ends, _)| [ends.from, ends.to])).collect()
+    }
+
+    /// Raises a turn by one rung. Returns whether it could be.
     pub(super) fn raise_turn(&mut self, ends: TurnEnds) -> bool {
         let above = Policy::ALL.iter().copied().find(|next| *next > self.turn(ends)).filter(|next| *next <= self.top);
         above.is_some_and(|policy| self.turns.insert(ends, policy) != Some(policy))

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use super::assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, movement};
-use super::climb::Raised;
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
@@ -36,8 +35,6 @@ pub(super) struct Whole {
     driver: Arc<Driver>,
     strokes: Strokes,
     menu: Menu,
-    /// Edges that stand, or whose turns stand, higher than their permits say.
-    raised: FxHashSet<EdgeNo>,
 }
 
 /// A way that passed as a whole.
@@ -68,75 +65,68 @@ impl Whole {
     pub(super) fn new(roads: &Arc<Roads>, driver: Arc<Driver>, turns: Box<dyn Turns>) -> Self {
         let permits = &driver.permits;
         let strokes = Strokes::on_rungs(roads, permits.settings.clone(), permits.rungs.clone());
-        Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns), raised: FxHashSet::default() }
+        Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns) }
     }
 
-    /// Every place stands on the rung of its permit again. What answers depend on must not depend on earlier questions.
-    pub(super) fn begin_rungs(&mut self) {
-        if self.raised.is_empty() {
-            return;
-        }
-        let edges: Vec<EdgeNo> = self.raised.drain().collect();
-        let rungs = self.driver.permits.rungs.clone();
-        self.strokes.change_rungs(&edges, |of| *of = rungs);
-        self.forget_beside(&edges);
+    /// Changes strips. What lies beside edges whose strips change is made again.
+    fn put_rungs(&mut self, rungs: Rungs, edges: &[EdgeNo]) {
+        self.strokes.put_rungs(rungs, edges);
+        self.forget_beside(edges.iter().copied(), &[]);
     }
 
     /// Changes strips as `raise` does. Returns whether anything stands higher now.
-    fn raise(&mut self, raise: impl FnOnce(&mut Rungs, &Network) -> Raised) -> bool {
+    fn raise(&mut self, raise: impl FnOnce(&mut Rungs, &Network) -> Vec<EdgeNo>) -> bool {
         let mut rungs = self.strokes.rungs().clone();
-        let raised = raise(&mut rungs, &self.roads.network);
-        if raised.is_empty() {
-            return false;
+        let edges = raise(&mut rungs, &self.roads.network);
+        if !edges.is_empty() {
+            self.put_rungs(rungs, &edges);
         }
-        let turns = raised.turns.iter().flat_map(|turn| [turn.from, turn.to]);
-        let edges: Vec<EdgeNo> = raised.edges.iter().copied().chain(turns).collect();
-        self.strokes.change_rungs(&edges, |of| *of = rungs);
-        self.forget_beside(&edges);
-        self.raised.extend(edges);
-        true
+        !edges.is_empty()
     }
 
-    /// Certifies a way on strips that are as narrow as it can be: where it fails, roads become wider and turns climb.
+    /// Certifies a way on strips that are as narrow as it can be: where it fails, roads become wider and turns climb. It begins with the strips
+    /// of the permits, whatever was raised for other ways.
     fn climb(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
-        self.begin_rungs();
+        let permitted = self.driver.permits.rungs.clone();
+        let raised = self.strokes.rungs().above(&permitted);
+        self.put_rungs(permitted, &raised);
         for _ in 0..MOST_RAISED {
-            let path = match self.joined(way, stop)? {
-                Ok(path) => path,
-                Err(refutation) => {
-                    let at = refutation.at;
-                    match self.raise(|rungs, network| rungs.raise(network, way.drive, at, f32::MAX)) {
-                        true => continue,
-                        false => return Ok(Err(refutation)),
+            // The place that refutes the way, and what is missing there, metres.
+            let (refutation, missing_m) = match self.joined(way, stop)? {
+                Err(refutation) => (refutation, f32::MAX),
+                Ok(path) => {
+                    let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+                    let results = stet::certify_parts(&path.corridor, model, &parts(&path), options, stop)?;
+                    let results: Vec<_> = path.parts.iter().map(|part| part.kind).zip(results).collect();
+                    if !results.iter().all(|(_, result)| result.safe()) {
+                        if self.raise(|rungs, network| rungs.raise_failing(network, &results)) {
+                            continue;
+                        }
+                        return Ok(Err(worst(&results)));
+                    }
+                    match self.certify_path(path, stop)? {
+                        Ok(certified) => return Ok(Ok(certified)),
+                        Err(refutation) => (refutation, 0.0),
                     }
                 }
             };
-            let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
-            let results = stet::certify_parts(&path.corridor, model, &parts(&path), options, stop)?;
-            let of_parts: Vec<_> = path.parts.iter().map(|part| part.kind).zip(results).collect();
-            if of_parts.iter().all(|(_, result)| result.safe()) {
-                let refutation = match self.certify(way, stop)? {
-                    Ok(certified) => return Ok(Ok(certified)),
-                    Err(refutation) => refutation,
-                };
-                let at = refutation.at;
-                match self.raise(|rungs, network| rungs.raise(network, way.drive, at, 0.0)) {
-                    true => continue,
-                    false => return Ok(Err(refutation)),
-                }
-            }
-            if !self.raise(|rungs, network| rungs.raise_failing(network, &of_parts)) {
-                return Ok(Err(worst(&of_parts)));
+            let at = refutation.at;
+            if !self.raise(|rungs, network| rungs.raise(network, way.drive, at, missing_m)) {
+                return Ok(Err(refutation));
             }
         }
         self.certify(way, stop)
     }
 
-    /// Forgets the turns near edges whose strips have changed.
-    fn forget_beside(&mut self, edges: &[EdgeNo]) {
+    /// Forgets the turns near edges, and near nodes at these positions.
+    fn forget_beside(&mut self, edges: impl Iterator<Item = EdgeNo>, nodes: &[LonLat]) {
         let network = &self.roads.network;
         let line = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.positions(edge));
-        let changed: Vec<LonLat> = edges.iter().copied().filter_map(line).flatten().collect();
+        let changed: Vec<LonLat> = edges.filter_map(line).flatten().chain(nodes.iter().copied()).collect();
+        let near = |a: LonLat, b: LonLat| {
+            let [east_m, north_m] = offset_m(a, b);
+            east_m.hypot(north_m) < BESIDE_M
+        };
         self.menu.forget(|from, to| {
             let ends = [line(from).and_then(|mut line| line.next_back()), line(to).and_then(|mut line| line.next())];
             ends.into_iter().flatten().any(|end| changed.iter().any(|&at| near(at, end)))
@@ -152,18 +142,11 @@ impl Whole {
     /// Goes on with roads on which these edges have other widths, and nodes at these positions other corners or surfaces. What lies
     /// beside them is made again.
     pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<EdgeNo>, nodes: &[LonLat]) {
-        let network = &roads.network;
         let stroke = |edge: EdgeNo| self.strokes.of(edge).map(|place| place.0);
         let strokes: FxHashSet<u32> = edges.iter().filter_map(|&edge| stroke(edge)).collect();
-        let line = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.positions(edge));
-        let along = edges.iter().copied().filter_map(line).flatten();
-        let changed: Vec<LonLat> = along.chain(nodes.iter().copied()).collect();
-        self.menu.forget(|from, to| {
-            let ends = [line(from).and_then(|mut line| line.next_back()), line(to).and_then(|mut line| line.next())];
-            ends.into_iter().flatten().any(|end| changed.iter().any(|&at| near(at, end)))
-        });
-        self.strokes.go_on_with(roads, |stroke| strokes.contains(&stroke));
         self.roads = Arc::clone(roads);
+        self.forget_beside(edges.iter().copied(), nodes);
+        self.strokes.go_on_with(roads, |stroke| strokes.contains(&stroke));
     }
 
     /// Certifies a way. Each turn starts on its best path. Returns the certified way, if one passed, and the failures before it:
@@ -280,10 +263,13 @@ impl Whole {
     }
 
     fn certify(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
-        let path = match self.joined(way, stop)? {
-            Ok(path) => path,
-            Err(refutation) => return Ok(Err(refutation)),
-        };
+        match self.joined(way, stop)? {
+            Ok(path) => self.certify_path(path, stop),
+            Err(refutation) => Ok(Err(refutation)),
+        }
+    }
+
+    fn certify_path(&mut self, path: RoutePath, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
         let certificate = stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
@@ -302,12 +288,6 @@ impl Whole {
         let uses = StripUse::all(&mut self.strokes, &path, &certificate, &self.driver.model.vehicle);
         CertifiedWay { path, certificate, uses }
     }
-}
-
-/// Whether a turn at one place sees what changes at the other.
-fn near(a: LonLat, b: LonLat) -> bool {
-    let [east_m, north_m] = offset_m(a, b);
-    east_m.hypot(north_m) < BESIDE_M
 }
 
 /// The refutation of a way at its worst part.

@@ -174,7 +174,12 @@ impl Route {
     }
 
     fn tell_scope(&self, out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io::Result<()> {
-        let policy = inputs.settings().policy.name();
+        let policy = inputs.settings().policy;
+        if answer.routes.is_empty() && self.at_most.is_none() && policy != Policy::Carriageway {
+            let wider = "`--at-most carriageway` would use more of the road where it must, the oncoming lane included, and say where.";
+            writeln!(out, "{}\n", wrapped(wider, ""))?;
+        }
+        let policy = policy.name();
         let policy = match self.at_most.map(Policy::name) {
             Some(top) if answer.routes.is_empty() => format!("{top} policy"),
             Some(top) => format!("{policy} policy, where that is not enough up to {top}"),

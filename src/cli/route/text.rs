@@ -89,10 +89,12 @@ fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &C
     numbers(out, inputs, found)?;
     writeln!(out)?;
     parts(out, network, found)?;
+    writeln!(out)?;
+    uses(out, network, found)?;
     limited(out, inputs, found)?;
     let told = "The numbers hold only if all of this is so on site. Nothing here says that it is: `netcert route --sheet` writes it \
                 down to be checked, and `netcert evidence add` takes the measurements.";
-    writeln!(out, "\n{}\n", wrapped(told, "  "))?;
+    writeln!(out, "{}\n", wrapped(told, "  "))?;
     if !conditional.suffices {
         let told = "If all of it is measured exactly so, the route may still ask for more: another search than the one that looks at measured \
                     roads found it. Measure more room where there is some.";
