@@ -1,12 +1,13 @@
 //! Routes under conditions over drawn junctions.
 
 use netcert_testing::ascii_map;
+use netcert_testing::extracts::extract;
 use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
 use netcert::evidence::Quantity;
 use netcert::osm::facts::Policy;
-use netcert::route::*;
+use netcert::route::{self, *};
 use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use routing::TestRegion;
@@ -105,6 +106,44 @@ fn two_turns_on_too_short_a_road_pass_under_conditions() {
         let places = [Quantity::KerbRadius, Quantity::Surface, Quantity::CarriagewayWidth];
         assert!(found.conditions.iter().all(|condition| places.contains(&condition.quantity)));
     }
+}
+
+/// On the first ways of these pairs some places are open to nothing; on others, with other roads before and behind them, they are.
+#[test]
+fn a_place_that_nothing_opens_on_one_way_may_be_open_on_another() {
+    let Some(sydney) = extract("sydney_au.osm.pbf") else { return };
+    let region = TestRegion::read(&sydney, Policy::Carriageway);
+    let driver = region.driver("AU-SEMI19");
+    let mut planner = region.planner(&driver, Measure::Time);
+    for [from, to] in [
+        [[151.213_306_4, -33.849_571_9], [151.211_924_2, -33.863_356_9]],
+        [[151.212_766_6, -33.865_693_7], [151.210_053_5, -33.869_134_4]],
+    ] {
+        let places = [from, to].map(|[lon, lat]| Position { lon, lat }).to_vec();
+        let question = Question { places, snap_m: 100.0, alternatives: 0, tries: 30 };
+        let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+        let found = answer.conditional.unwrap_or_else(|| panic!("{:?}", answer.nothing_helps));
+        assert!(found.route.certificate.result.safe() && !found.conditions.is_empty());
+        assert_eq!(answer.nothing_helps, []);
+    }
+}
+
+#[test]
+fn a_place_that_nothing_opens_is_named() {
+    // A bend of 172°: no radius, width or paving that is tried leaves room to turn back.
+    let nodes = [('W', [-300.0, 0.0]), ('a', [0.0, 0.0]), ('S', [-300.0, -40.0])];
+    let region = region(&AsciiMap::placed(&nodes).way("Wa", TAGS).way("aS", TAGS), 3.0);
+    let driver = region.driver("AU-ATRIPLE53");
+    let places = vec![on(&region, "Wa"), on(&region, "aS")];
+    let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
+    let mut planner = region.planner(&driver, Measure::Distance);
+    let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+    let edges = ["Wa", "aS"].map(|ends| ascii_map::edge(&region.network, ends));
+    assert!(answer.routes.is_empty() && answer.conditional.is_none());
+    assert_eq!(answer.nothing_helps, [PartKind::Turn { from: edges[0], to: edges[1] }]);
+    let json = route::json(&region.network, &planner.driver().model, &answer);
+    assert_eq!(json["nothing_helps"][0]["kind"], "turn");
+    assert!(json["nothing_helps"][0]["place"].is_array(), "{json}");
 }
 
 /// Two crossings of one road, far apart, with a corner to turn at each.

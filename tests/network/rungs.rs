@@ -180,6 +180,61 @@ fn a_ladder_of_one_rung_answers_as_a_planner_without_one() {
     assert_eq!(climbed.routes[0].cost, route.cost);
 }
 
+/// The road before the corner needs more than its lane, and goes on beyond the corner, where the way does not.
+#[test]
+fn a_road_that_the_way_leaves_does_not_bend_the_way_before() {
+    let nodes =
+        [('A', [-400.0, 0.0]), ('J', [0.0, 0.0]), ('E', [400.0, 0.0]), ('S', [0.0, -400.0]), ('N', [0.0, 400.0])];
+    let tags = "highway=secondary lanes=2 width=8";
+    let region = region(&AsciiMap::placed(&nodes).way("AJE", tags).way("NJS", tags), 1.0);
+    let mut planner = climber(&region, &[Policy::Lane, Policy::Direction, Policy::Carriageway]);
+    let answer = ask(&region, &mut planner, ["AJ", "JS"]);
+    let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
+    let length_m: f64 = route.uses.iter().map(|used| used.to_m - used.from_m).sum();
+    // With a narrow road behind the corner, the line of the road before it would bend, and the way would need 168 m.
+    assert!(length_m < 140.0, "{:?}", route.uses);
+    whole::hold(&planner.driver().model.vehicle, &route.path.corridor, &route.certificate, 3);
+}
+
+/// The corner has too small a kerb even for the whole carriageway. The roads before and after it are wide enough for their lanes.
+#[test]
+fn a_way_under_conditions_keeps_to_its_lane_away_from_them() {
+    let nodes = [
+        ('A', [-900.0, 0.0]),
+        ('B', [-200.0, 0.0]),
+        ('J', [0.0, 0.0]),
+        ('E', [400.0, 0.0]),
+        ('S', [0.0, -900.0]),
+        ('C', [0.0, -200.0]),
+        ('N', [0.0, 400.0]),
+        ('u', [-200.0, 100.0]),
+        ('v', [100.0, -200.0]),
+    ];
+    let (tags, side) = ("highway=secondary lanes=2 width=6.6", "highway=residential");
+    let map = AsciiMap::placed(&nodes).way("ABJE", tags).way("SCJN", tags).way("Bu", side).way("Cv", side);
+    let region = region(&map, 2.0);
+    let places = vec![on(&region, "AB"), on(&region, "CS")];
+    let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
+    let under_conditions = |planner: &mut Planner| {
+        let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+        assert!(answer.routes.is_empty());
+        answer.conditional.unwrap()
+    };
+    let carriageway = under(&region, Policy::Carriageway);
+    let widest = under_conditions(&mut carriageway.planner(&carriageway.driver(VEHICLE), Measure::Time));
+    let mut planner = climber(&region, &[Policy::Lane, Policy::Direction, Policy::Carriageway]);
+    let climbed = under_conditions(&mut planner);
+    assert_eq!(climbed.conditions, widest.conditions, "what has to hold is the same");
+    assert!(!climbed.conditions.is_empty() && climbed.route.certificate.result.safe());
+    // The way begins 550 m before the node and ends 550 m behind it.
+    for used in &climbed.route.uses {
+        assert!(used.from_m > 550.0 - 260.0 && used.to_m < 550.0 + 260.0, "{used:?}");
+    }
+    let beyond_m = |route: &Route| route.uses.iter().map(|used| used.to_m - used.from_m).sum::<f64>();
+    assert!(beyond_m(&widest.route) > 800.0 && beyond_m(&climbed.route) > 20.0, "{:?}", climbed.route.uses);
+    whole::hold(&planner.driver().model.vehicle, &climbed.route.path.corridor, &climbed.route.certificate, 4);
+}
+
 /// From `A` to `D` there is a narrow road straight on, and a wide one that is a little longer and needs the oncoming lane at its two turns
 /// alone.
 #[test]

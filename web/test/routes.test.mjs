@@ -205,9 +205,11 @@ inPage("what blocks a route is numbered, with its kind, its reason and what that
   const answer = await (await fetch(`${all.address}/api/route?vehicle=AU-ATRIPLE53&policy=carriageway&from=126.026942,-30.203315&to=126.046615,-30.205563&snap=500&conditions=none`)).json();
   const obstacles = answer.obstacles.map((one) => ({ ...one, kerb_assumed: one.kind === "turn" ? true : null, width_source: one.kind === "edge" ? "assumed" : null }));
   await page.route(/conditions=none/, (asked) => asked.fulfill({ json: { ...answer, obstacles } }));
-  await page.route(/conditions=search/, (asked) => asked.fulfill({ json: { ...answer, obstacles } }));
+  const nothing_helps = [{ kind: "turn", title: "Mill Lane into High Street", place: null }];
+  await page.route(/conditions=search/, (asked) => asked.fulfill({ json: { ...answer, obstacles, nothing_helps } }));
   await page.reload();
   await page.waitForSelector(".route .verdict.is-blocked");
+  await page.getByText(/no kerb radius, width or paving that was tried opens Mill Lane into High Street\./).waitFor();
   const row = await text(page, ".numbered-list li");
   assert.match(row, /1[\s\S]*(Too narrow|Hinge|Fails)[\s\S]*(turn|road)[\s\S]*(kerb radius: assumed|width: assumed from class)/i);
   await idle(page);

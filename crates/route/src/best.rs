@@ -6,8 +6,8 @@ use crate::stop::Stop;
 
 impl Planner {
     /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
-    /// longer. A planner that climbs looks for conditions on the widest strip alone. A place that is near no safe road may be near a
-    /// lawful one. Where `stop` is told during that search, the answer is what blocks the way.
+    /// longer. A planner that climbs looks for conditions on the widest strip; the way that they open climbs, too. A place that is near no safe
+    /// road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks the way.
     ///
     /// # Errors
     /// A place is near no road that the vehicle may use, or `stop` was told before it was known what blocks the way.
@@ -42,7 +42,10 @@ impl Planner {
             }
             searched => searched?,
         };
-        let Ok(Conditional { route, conditions, suffices, snapped }) = searched else { return Ok(certified?) };
+        let Conditional { route, conditions, suffices, snapped } = match searched {
+            Ok(conditional) => conditional,
+            Err(hopeless) => return Ok(Answer { nothing_helps: hopeless.places, ..certified? }),
+        };
         // A way that passes without any condition is a certified route.
         if conditions.is_empty() {
             return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });

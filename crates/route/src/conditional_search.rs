@@ -1,9 +1,9 @@
 //! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
 
 use super::assemble::{DrivenWay, PartKind};
-use super::conditions::{Conditional, Fitted, Fitter, Unfit, conditional_access};
-use super::graph::{Access, BARRED};
-use super::obstacles::{self, Refutation};
+use super::conditions::{Conditional, ConditionalAccess, Fitted, Fitter, RoadPrice, Unfit};
+use super::graph::BARRED;
+use super::obstacles::Refutation;
 use super::plan::{Planner, Question, Unanswered};
 use super::snap::Snapped;
 use crate::network::EdgeNo;
@@ -45,14 +45,29 @@ impl Planner {
         searching: impl FnOnce(),
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
-        let access = conditional_access(self.graph.roads(), &self.driver.permits, refuted);
-        let open = |edge: EdgeNo| access.edges.get(edge.index()).is_some_and(|&price| price != BARRED);
+        let access = |by: RoadPrice| {
+            let mut access = ConditionalAccess::new(self.graph.roads(), &self.driver.permits, refuted, by);
+            self.below.iter().for_each(|below| below.add_prices(&mut access.search, &self.graph));
+            access
+        };
+        let first = access(RoadPrice::ByEdge);
+        let open = |edge: EdgeNo| first.lacking.edges.get(edge.index()).is_some_and(|&price| price != BARRED);
         let snap = |place| self.snapper.snap(place, question.snap_m, open);
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
         searching();
         let kept = self.fitter.take();
         let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
-        let answer = self.fit(&mut fitter, question, snapped, access, stop);
+        let mut answer = self.fit(&mut fitter, question, snapped.clone(), first, stop);
+        // What nothing opens on one way may be open on another, with other roads before and behind it.
+        if let Ok(Err(hopeless)) = &answer {
+            let places = hopeless.places.clone();
+            answer = self.fit(&mut fitter, question, snapped, access(RoadPrice::ByRoad), stop);
+            if let Ok(Err(again)) = &mut answer {
+                again.places.extend(places);
+                again.places.sort_unstable();
+                again.places.dedup();
+            }
+        }
         self.fitter = Some(fitter);
         Ok(answer?)
     }
@@ -63,16 +78,21 @@ impl Planner {
         fitter: &mut Fitter,
         question: &Question,
         snapped: Vec<Snapped>,
-        mut access: Access,
+        mut access: ConditionalAccess,
         stop: &Stop,
     ) -> Result<Result<Conditional, Hopeless>, Stopped> {
         let mut hopeless = Hopeless::default();
         for _ in 0..WAYS.min(question.tries.max(1)) {
-            let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
+            let Some((mut found, start, end)) = self.way(&access.search, &snapped)? else { return Ok(Err(hopeless)) };
             let way = DrivenWay { drive: &found.drive, start, end };
-            match fitter.fit(&way, &access, stop)? {
-                Ok(Fitted { drive, certified, supposed, suffices }) => {
+            match fitter.fit(&way, &access.lacking, stop)? {
+                Ok(Fitted { drive, mut certified, supposed, choices, suffices }) => {
                     found.drive = drive;
+                    if let Some(below) = &self.below {
+                        let way = DrivenWay { drive: &found.drive, start, end };
+                        let climbed = fitter.climbed(&way, &supposed, &choices, &below.climbing, stop)?;
+                        certified = climbed.unwrap_or(certified);
+                    }
                     let kerbs = &self.driver.permits.settings.kerbs;
                     let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
                     let route = self.route(&found, start, end, certified);
@@ -81,9 +101,10 @@ impl Planner {
                 Err(Unfit(places)) => {
                     let mut barred = false;
                     for at in places {
-                        let slot = obstacles::slot(&mut access, self.graph.movements(), at);
-                        barred |= slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED);
-                        hopeless.places.push(at);
+                        barred |= access.bar(self.graph.movements(), at);
+                        if !hopeless.places.contains(&at) {
+                            hopeless.places.push(at);
+                        }
                     }
                     // If nothing can be left out, the next search would find the same way.
                     if !barred {

@@ -345,7 +345,9 @@ impl Strokes {
         self.made.entry(stroke).or_insert_with(make).clone()
     }
 
-    /// The numbers of a stroke's edges by their ids, those of its approach included. Empty if no road is wider than its policy's strip.
+    /// By id of a stroke's edges, those of its approach included: the edge whose strip counts there. An edge that the way does not drive is as
+    /// much wider as the nearest one that it drives. Otherwise the line would bend, and the road become narrow, where the way turns off. Empty if
+    /// no road is wider than its policy's strip.
     fn numbers_on(&self, stroke: u32) -> FxHashMap<i64, EdgeNo> {
         let network = &self.roads.network;
         let Some(facts) = network.strokes.get(stroke as usize).filter(|_| !self.rungs.is_level()) else {
@@ -354,7 +356,11 @@ impl Strokes {
         let ranges = [&facts.approach, &facts.edges];
         let edges =
             ranges.into_iter().filter_map(|range| network.stroke_edges.get(range.start as usize..range.end as usize));
-        edges.flatten().filter_map(|&no| Some((network.edges.get(no.index())?.id, no))).collect()
+        let edges: Vec<EdgeNo> = edges.flatten().copied().collect();
+        let driven: Vec<usize> = (0..edges.len()).filter(|&at| self.rungs.drives(edges[at])).collect();
+        let counts =
+            |at: usize| driven.iter().min_by_key(|driven| driven.abs_diff(at)).map_or(edges[at], |&at| edges[at]);
+        (0..edges.len()).filter_map(|at| Some((network.edges.get(edges[at].index())?.id, counts(at)))).collect()
     }
 
     /// The line of the stroke that an edge belongs to.

@@ -63,6 +63,9 @@ pub struct Answer {
     pub conditional: Option<Conditional>,
     /// Whether the search for a route under conditions was ended before it was through.
     pub conditions_cut_short: bool,
+    /// If no route is certified under any conditions: the places for which nothing does that the search supposed. Ways without them were
+    /// tried, too.
+    pub nothing_helps: Vec<PartKind>,
     /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,
 }
@@ -79,6 +82,21 @@ pub enum Unanswered {
     Stopped(#[from] Stopped),
 }
 
+/// The rungs below the widest strip, with what they cost.
+pub(super) struct Below {
+    /// The vehicle with the permit of the narrowest strip for each edge and turn.
+    pub(super) climbing: Arc<Driver>,
+    prices: RungPrices,
+    measure: Measure,
+}
+
+impl Below {
+    /// Adds to an access what it costs to climb.
+    pub(super) fn add_prices(&self, access: &mut Access, graph: &Graph) {
+        self.prices.add(access, graph, &self.climbing.permits.rungs, self.measure);
+    }
+}
+
 /// Answers questions about one vehicle. It keeps the corridors that it has made, so later questions are answered faster.
 pub struct Planner {
     pub(super) graph: Graph,
@@ -91,6 +109,8 @@ pub struct Planner {
     access: Access,
     /// A planner that climbs has one for the widest strip alone. It says what blocks, and looks for conditions.
     pub(super) widest: Option<Box<Planner>>,
+    /// The planner for the widest strip of a ladder knows the ladder: where conditions hold, a way climbs it, too.
+    pub(super) below: Option<Below>,
     pub(super) stop: Stop,
 }
 
@@ -114,8 +134,10 @@ impl Planner {
         prices: &RungPrices,
     ) -> Self {
         let mut planner = Self::new(roads, Arc::clone(&ladder.climbing), speeds.clone(), measure);
-        prices.add(&mut planner.access, &planner.graph, &planner.driver.permits.rungs, measure);
-        planner.widest = Some(Box::new(Self::new(roads, Arc::clone(&ladder.widest), speeds.clone(), measure)));
+        let below = Below { climbing: Arc::clone(&ladder.climbing), prices: prices.clone(), measure };
+        below.add_prices(&mut planner.access, &planner.graph);
+        let widest = Self::new(roads, Arc::clone(&ladder.widest), speeds.clone(), measure);
+        planner.widest = Some(Box::new(Self { below: Some(below), ..widest }));
         planner
     }
 
@@ -134,6 +156,7 @@ impl Planner {
             access: driver.permits.access(&roads.movements),
             graph,
             widest: None,
+            below: None,
             whole: Whole::new(roads, Arc::clone(&driver), turns),
             fitter: None,
             driver,
@@ -278,9 +301,9 @@ impl Planner {
         let CertifiedWay { path, certificate, uses } = certified;
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
-        let (drive, cost, vehicle_length_m) = (found.drive.clone(), found.cost, self.driver.model.vehicle.length_m);
-        // The price of climbing only chooses between ways.
-        let cost = if self.widest.is_some() { cost_of(&self.graph, &drive, start, end) } else { cost };
+        let (drive, vehicle_length_m) = (found.drive.clone(), self.driver.model.vehicle.length_m);
+        // Prices only choose between ways.
+        let cost = cost_of(&self.graph, &drive, start, end);
         Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate, uses }
     }
 

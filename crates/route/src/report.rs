@@ -38,6 +38,11 @@ fn with(mut object: Value, more: Value) -> Value {
     object
 }
 
+/// What tells a place, with its position.
+fn placed(network: &Network, at: PartKind) -> Value {
+    with(ids(network, at), json!({"place": place(network, at)}))
+}
+
 fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
     let result = &route.certificate.result;
     json!({
@@ -188,11 +193,13 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
         "refuted": answer.refuted.iter().map(|r| refutation_members(network, r)).collect::<Vec<_>>(),
         "gave_up": answer.gave_up,
         "conditions_cut_short": answer.conditions_cut_short,
+        "nothing_helps": answer.nothing_helps.iter().map(|&at| placed(network, at)).collect::<Vec<_>>(),
         "obstacles": answer.obstacles.as_ref().map(|all| all.iter().map(|o| obstacle_members(network, &model.vehicle, o)).collect::<Vec<_>>()),
     })
 }
 
-/// A GeoJSON collection: each route as one line followed by its parts and by where it uses more than its own lane, and obstacles as points.
+/// A GeoJSON collection: each route as one line followed by its parts and by where it uses more than its own lane; conditions, obstacles and
+/// places that no condition opens as points.
 ///
 /// # Errors
 /// Positions cannot be converted from a route's frame.
@@ -246,6 +253,14 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
             "type": "Feature",
             "geometry": {"type": "Point", "coordinates": place(network, obstacle.at)},
             "properties": with(json!({"vehicle_id": model.vehicle.id}), obstacle_members(network, &model.vehicle, obstacle)),
+        }));
+    }
+    for &at in &answer.nothing_helps {
+        let of = json!({"vehicle_id": model.vehicle.id, "feature": "nothing_helps"});
+        features.push(json!({
+            "type": "Feature",
+            "geometry": {"type": "Point", "coordinates": place(network, at)},
+            "properties": with(of, ids(network, at)),
         }));
     }
     Ok(json!({"type": "FeatureCollection", "features": features}))

@@ -5,8 +5,9 @@
 //! one of their permits. Where the way is not safe, roads become wider by what is missing, and turns climb by one rung. What is safe on a way
 //! of several widths is decided by one certificate over the whole way, as on any other way.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::drive::Drive;
 use super::turn_ends::TurnEnds;
 use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{CrossSection, Policy};
@@ -27,6 +28,8 @@ pub struct Rungs {
     turns: FxHashMap<TurnEnds, Policy>,
     /// How much wider than the base's strip the road counts, metres.
     widened: FxHashMap<EdgeNo, f32>,
+    /// The edges of the way that climbs.
+    driven: FxHashSet<EdgeNo>,
 }
 
 impl Rungs {
@@ -39,7 +42,18 @@ impl Rungs {
             edges: FxHashMap::default(),
             turns: FxHashMap::default(),
             widened: FxHashMap::default(),
+            driven: FxHashSet::default(),
         }
+    }
+
+    /// The same for a way with these edges.
+    pub(super) fn on_way(self, edges: &[EdgeNo]) -> Self {
+        Self { driven: edges.iter().copied().collect(), ..self }
+    }
+
+    /// Whether the way that climbs drives an edge.
+    pub(super) fn drives(&self, edge: EdgeNo) -> bool {
+        self.driven.contains(&edge)
     }
 
     /// Whether every edge and turn has the same strip, and keeps it.
@@ -86,16 +100,30 @@ impl Rungs {
         self.turns.insert(ends, strip);
     }
 
-    /// Makes a road wider by what is missing and a little more, metres. Returns whether it could be.
+    /// Makes a road wider by what is missing and a little more, metres, and each time by at least twice as much as before. Returns whether it
+    /// could be.
     pub(super) fn widen(&mut self, network: &Network, edge: EdgeNo, missing_m: f32) -> bool {
         let Some(facts) = network.edges.get(edge.index()) else { return false };
         let room_m = network.section(facts).room_m(self.base, self.top);
         let more_m = self.widened.entry(edge).or_default();
         let raised = *more_m < room_m;
         if raised {
-            *more_m = (*more_m + missing_m + MORE_M).min(room_m);
+            *more_m = (*more_m + (missing_m + MORE_M).max(*more_m)).min(room_m);
         }
         raised
+    }
+
+    /// Makes roads as wide as they can be.
+    pub(super) fn widen_wholly(&mut self, network: &Network, edges: &[EdgeNo]) {
+        for &edge in edges {
+            self.widen(network, edge, f32::MAX);
+        }
+    }
+
+    /// Raises all turns of a way to the widest strip.
+    pub(super) fn raise_turns(&mut self, drive: &Drive) {
+        let (ends, top) = (drive.joins().map(|join| TurnEnds { from: join.from, to: join.to }), self.top);
+        self.turns.extend(ends.map(|ends| (ends, top)));
     }
 
     /// The edges that stand, or whose turns stand, higher than in `permitted`, from which these rungs were raised.

@@ -27,7 +27,7 @@ const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
 /// How often what fails on one way is raised.
-const MOST_RAISED: usize = 40;
+pub(super) const MOST_RAISED: usize = 40;
 
 /// Certifies ways of one vehicle. It keeps the strokes and turns that it has made.
 pub(super) struct Whole {
@@ -87,10 +87,22 @@ impl Whole {
     /// Certifies a way on strips that are as narrow as it can be: where it fails, roads become wider and turns climb. It begins with the strips
     /// of the permits, whatever was raised for other ways.
     fn climb(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
-        let permitted = self.driver.permits.rungs.clone();
-        let raised = self.strokes.rungs().above(&permitted);
-        self.put_rungs(permitted, &raised);
-        for _ in 0..MOST_RAISED {
+        self.climb_from(self.driver.permits.rungs.clone(), MOST_RAISED, way, stop)
+    }
+
+    /// As [`Self::climb`], from other strips than those of the permits. What fails is raised `most_raised` times at most.
+    pub(super) fn climb_from(
+        &mut self,
+        rungs: Rungs,
+        most_raised: usize,
+        way: &DrivenWay<'_>,
+        stop: &Stop,
+    ) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
+        let known = self.strokes.rungs();
+        let rungs = rungs.on_way(&way.drive.edges);
+        let differing: Vec<EdgeNo> = known.above(&rungs).into_iter().chain(rungs.above(known)).collect();
+        self.put_rungs(rungs, &differing);
+        for _ in 0..most_raised {
             // The place that refutes the way, and what is missing there, metres.
             let (refutation, missing_m) = match self.joined(way, stop)? {
                 Err(refutation) => (refutation, f32::MAX),
@@ -219,6 +231,11 @@ impl Whole {
         let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
         let safe = certified.filter(|(certificate, _)| certificate.result.safe());
         Ok(safe.map(|(certificate, _)| self.certified(path, certificate)))
+    }
+
+    /// Chooses paths of turns, and of every other turn the best one.
+    pub(super) fn choose(&mut self, choices: &Choices) {
+        self.menu.choose(choices);
     }
 
     /// Chooses the next path of a turn of a way. Returns whether there is one.

@@ -48,6 +48,7 @@ pub(super) fn tell(
         if answer.conditional.is_none() || answer.obstacles.is_some() {
             blocked(out, inputs, answer, compared)?;
         }
+        nothing_helps(out, network, answer)?;
     }
     for refutation in &answer.refuted {
         let why = match (&refutation.result, &refutation.assembly) {
@@ -225,6 +226,22 @@ fn limited(out: &mut dyn Write, inputs: &RoutingInputs, found: &Route) -> std::i
     tell(out, "Only for a vehicle whose journey begins or ends there", &destinations)?;
     tell(out, "Closed to the vehicle at other times", &times)?;
     if destinations.is_empty() && times.is_empty() { Ok(()) } else { writeln!(out) }
+}
+
+/// Names the places for which the search for conditions found none.
+fn nothing_helps(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::Result<()> {
+    if answer.nothing_helps.is_empty() {
+        return Ok(());
+    }
+    let told = "A route under conditions was looked for, and there is none. No kerb radius, width or paving that was tried opens these places:";
+    writeln!(out, "{}\n", wrapped(told, "  "))?;
+    let mut table = Table::new(&["at", "", "road"]);
+    for &at in &answer.nothing_helps {
+        let place = route::place(network, at).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}"));
+        table.row([place, how(network, at).to_owned(), printable(&route::title(network, at))]);
+    }
+    table.write(out, "  ")?;
+    writeln!(out)
 }
 
 /// What is missing at an obstacle, metres. At a turn it is a bound from below.

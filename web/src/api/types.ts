@@ -419,6 +419,8 @@ export interface RouteAnswer {
   routes: Route[];
   places: { position: Position; distance_m: number }[];
   gave_up: boolean;
+  /** The places that no condition opens, where no route is certified under any. */
+  nothing_helps: { kind: PartKind; title: string; place: Position | null }[];
   obstacles: Obstacle[] | null;
   conditional: ConditionalRoute | null;
   /** The way on which the obstacles lie. */

@@ -193,7 +193,7 @@ export class RoutePanel {
         { class: "verdict is-blocked" },
         h("span", { class: "badge" }, h("i", { class: "line line-blocked" }), "Blocked"),
       ),
-      searchWords(search),
+      searchWords(search, answer),
       h("p", { class: "headline-words" }, `Even on the easiest way ${what}: ${reasons(answer.obstacles)}. It is the dotted line on the map.`),
       this.#list!.element,
       h("p", { class: "scope" }, `Each of them would have to be certified first. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
@@ -206,10 +206,17 @@ function byKeyboard(): HTMLElement {
   return h("p", { class: "note" }, "By keyboard: go to the map with the Tab key, move it with the arrows, and press Enter to take the place under the cross.");
 }
 
+/** So many places are named at most that no condition opens. */
+const MOST_HOPELESS = 5;
+
 /** What became of the search for a route under conditions. */
-function searchWords(search: Search): Node {
+function searchWords(search: Search, { nothing_helps: hopeless }: RouteAnswer): Node {
   if (search === "searching") return h("p", { class: "waiting", role: "status" }, longer);
-  if (search === "none") return h("p", { class: "note" }, "Nor is there a route under conditions: on every way that was tried something decides that no measurement helps.");
+  if (search === "none") {
+    const places = [...new Set(hopeless.map(({ title }) => title))].slice(0, MOST_HOPELESS).join("; ");
+    const what = places ? `no kerb radius, width or paving that was tried opens ${places}` : "on every way that was tried something decides that no measurement helps";
+    return h("p", { class: "note" }, `Nor is there a route under conditions: ${what}.`);
+  }
   if (search) return h("p", { class: "note", role: "alert" }, `No route under conditions was found: ${search.failed}. The command line has no limit of time.`);
   return document.createTextNode("");
 }

@@ -16,13 +16,19 @@ use super::sections::{Section, sections};
 use super::stretch::ROUNDS;
 use super::suppositions::Suppositions;
 use crate::assemble::{DrivenWay, PartKind};
+use crate::driver::Driver;
 use crate::graph::Access;
 use crate::obstacles::Refutation;
+use crate::pieces::Choices;
+use crate::rungs::Rungs;
 use crate::stop::{Stop, Stopped};
-use crate::whole::CertifiedWay;
+use crate::turn_ends::TurnEnds;
+use crate::whole::{CertifiedWay, MOST_RAISED};
 
 /// A leg between two turns that is as much longer than the vehicle parts a way, metres.
 const APART_M: f64 = 80.0;
+/// How often what fails is raised at first, while roads beside corners begin with their lanes.
+const FIRST_RAISED: usize = 4;
 
 impl Fitter {
     /// Fits a way. `access` says what has a price.
@@ -221,4 +227,65 @@ impl Fitter {
         let way = DrivenWay { drive: &fitting.drive, start: fitting.start, end: fitting.end };
         fresh.prove(&way, &fitting.choices, stop)
     }
+
+    /// The way under what is supposed, on strips that are as narrow as they can be. `None` if the way is safe on the widest strip alone.
+    pub(crate) fn climbed(
+        &mut self,
+        way: &DrivenWay<'_>,
+        supposed: &Suppositions,
+        choices: &Choices,
+        climbing: &Arc<Driver>,
+        stop: &Stop,
+    ) -> Result<Option<CertifiedWay>, Stopped> {
+        supposed.apply(network_of(&mut self.roads));
+        let mut whole = Self::whole_of(&self.roads, climbing);
+        // Along all of a long road the widest strip is more than its corner needs. Where that does not do soon, it seldom does at all.
+        for (roads, most_raised) in [(WidestRoads::Wider, FIRST_RAISED), (WidestRoads::OfSections, MOST_RAISED)] {
+            let (rungs, choices) = self.rungs_at_conditions(way, supposed, choices.clone(), climbing, roads);
+            whole.choose(&choices);
+            if let Ok(certified) = whole.climb_from(rungs, most_raised, way, stop)? {
+                return Ok(Some(certified));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The strips with which a way under conditions begins to climb, and the paths that its turns keep. Turns of sections with a condition have
+    /// the widest strip and their paths. All other sections begin with the strips of the climbing vehicle's permits.
+    fn rungs_at_conditions(
+        &self,
+        way: &DrivenWay<'_>,
+        supposed: &Suppositions,
+        mut choices: Choices,
+        climbing: &Driver,
+        roads: WidestRoads,
+    ) -> (Rungs, Choices) {
+        let network = &self.roads.network;
+        let mut rungs = climbing.permits.rungs.clone();
+        for section in self.sections(way) {
+            let drive = &section.drive;
+            if supposed.edges_of(network, &drive.edges).next().is_none() {
+                for join in drive.joins() {
+                    choices.remove(&TurnEnds { from: join.from, to: join.to });
+                }
+                continue;
+            }
+            let roads = match roads {
+                WidestRoads::Wider => supposed.wider_edges(&drive.edges).collect(),
+                WidestRoads::OfSections => drive.edges.clone(),
+            };
+            rungs.widen_wholly(network, &roads);
+            rungs.raise_turns(drive);
+        }
+        (rungs, choices)
+    }
+}
+
+/// The roads that begin with the widest strip in a section with a condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum WidestRoads {
+    /// Those whose width is a condition.
+    Wider,
+    /// All.
+    OfSections,
 }

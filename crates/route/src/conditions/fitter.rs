@@ -46,6 +46,8 @@ pub(crate) struct Fitted {
     pub(crate) drive: Drive,
     pub(crate) certified: CertifiedWay,
     pub(crate) supposed: Suppositions,
+    /// The paths of turns.
+    pub(crate) choices: Choices,
     /// Whether the search with nothing supposed finds the same, once everything is measured exactly as supposed.
     pub(crate) suffices: bool,
 }
@@ -80,7 +82,7 @@ impl Fitting {
 
     /// The way as it is certified, where measurements exactly as supposed suffice.
     pub(super) fn fitted(self, certified: CertifiedWay) -> Fitted {
-        Fitted { drive: self.drive, certified, supposed: self.supposed, suffices: true }
+        Fitted { drive: self.drive, certified, supposed: self.supposed, choices: self.choices, suffices: true }
     }
 
     /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.

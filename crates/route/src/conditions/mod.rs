@@ -23,7 +23,7 @@ mod way_roads;
 
 // What the search for a way fits ways with.
 pub(super) use fitter::{Fitted, Fitter, Unfit};
-pub(super) use prices::conditional_access;
+pub(super) use prices::{ConditionalAccess, RoadPrice};
 
 pub use report::SHEET_COLUMNS;
 pub use sheet::{csv as sheet_csv, features as sheet_features, geojson as sheet_geojson};

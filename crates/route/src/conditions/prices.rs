@@ -2,6 +2,8 @@
 
 use rustc_hash::FxHashSet;
 
+use super::way_roads::goes_on;
+use crate::assemble::PartKind;
 use crate::graph::{Access, BARRED};
 use crate::network::{EdgeNo, Movements, Network};
 use crate::obstacles::{self, CENTIMETRE, Refutation};
@@ -24,23 +26,83 @@ const MEASURED_SHARE: u64 = 100;
 /// The greatest missing width that counts, centimetres.
 const MOST_MISSING_CM: f64 = 2000.0;
 
-/// The access to what is safe, and at a price to what room would make safe. `refuted` are the ways that failed as a whole without
-/// conditions.
-pub(crate) fn conditional_access(roads: &Roads, permits: &Permits, refuted: &[Refutation]) -> Access {
-    let (network, movements) = (&roads.network, &roads.movements);
-    let mut access = permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
-    for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
-        if let Some(slot) = obstacles::slot(&mut access, movements, refutation.at).filter(|slot| **slot == 0) {
-            let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
-            *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
+/// The access to ways under conditions.
+pub(crate) struct ConditionalAccess {
+    /// What is safe has no price here. What room would make safe has one.
+    pub(crate) lacking: Access,
+    /// What a search pays.
+    pub(crate) search: Access,
+}
+
+/// What a search pays for a road that lacks room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RoadPrice {
+    /// Each edge costs what it lacks: bends and widths differ along a road, and so do its conditions.
+    ByEdge,
+    /// Edges of one road one after the other are one place to measure.
+    ByRoad,
+}
+
+impl ConditionalAccess {
+    /// The access for a vehicle. `refuted` are the ways that failed as a whole without conditions.
+    pub(crate) fn new(roads: &Roads, permits: &Permits, refuted: &[Refutation], by: RoadPrice) -> Self {
+        let (network, movements) = (&roads.network, &roads.movements);
+        let mut lacking = permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
+        for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
+            if let Some(slot) = obstacles::slot(&mut lacking, movements, refutation.at).filter(|slot| **slot == 0) {
+                let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
+                *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
+            }
         }
+        let mut search = match by {
+            RoadPrice::ByEdge => lacking.clone(),
+            RoadPrice::ByRoad => by_road(roads, &lacking),
+        };
+        prefer_measured(network, movements, [&mut lacking, &mut search]);
+        Self { lacking, search }
     }
-    prefer_measured(network, movements, &mut access);
-    access
+
+    /// Bars a place. Returns whether it was not barred before.
+    pub(crate) fn bar(&mut self, movements: &Movements, at: PartKind) -> bool {
+        let bar = |access: &mut Access| {
+            let slot = obstacles::slot(access, movements, at);
+            slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
+        };
+        bar(&mut self.search);
+        bar(&mut self.lacking)
+    }
+}
+
+/// What a search pays where these edges and steps lack room: an edge its length, and whoever comes to it from another road or from an edge that
+/// lacks less the rest.
+fn by_road(roads: &Roads, lacking: &Access) -> Access {
+    let (network, movements) = (&roads.network, &roads.movements);
+    let strokes = network.strokes_of_edges();
+    let price = |edge: EdgeNo| lacking.edges.get(edge.index()).copied().filter(|price| *price != BARRED).unwrap_or(0);
+    let length = |edge: EdgeNo| {
+        let length_m = network.edges.get(edge.index()).map_or(0.0, |edge| network.length_m(edge));
+        ((CENTIMETRE as f64 * EDGE_CM_PER_M * length_m) as u64).min(price(edge))
+    };
+    let rest = |edge: EdgeNo| price(edge) - length(edge);
+    let comes = |from: EdgeNo, to: EdgeNo| {
+        let paid = if goes_on(network, &strokes, from, to) { rest(from) } else { 0 };
+        rest(to).saturating_sub(paid)
+    };
+    let mut search = lacking.clone();
+    for (edge, slot) in EdgeNo::all().zip(&mut search.edges).filter(|(_, slot)| **slot != BARRED) {
+        *slot = length(edge);
+    }
+    for (movement, slot) in movements.all().iter().zip(&mut search.movements) {
+        *slot = slot.saturating_add(comes(movement.from, movement.to));
+    }
+    for (passage, slot) in movements.passages().iter().zip(&mut search.passages) {
+        *slot = slot.saturating_add(comes(passage.from, passage.to));
+    }
+    search
 }
 
 /// Makes cheap what lacks room beside a measurement: the way for which somebody measured is looked at first.
-fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access) {
+fn prefer_measured(network: &Network, movements: &Movements, both: [&mut Access; 2]) {
     if network.site.is_empty() {
         return;
     }
@@ -58,11 +120,13 @@ fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access
             *price = (*price / MEASURED_SHARE).max(1);
         }
     };
-    EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
-    let turns = movements.all().iter().zip(&mut access.movements);
-    turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
-    let passages = movements.passages().iter().zip(&mut access.passages);
-    passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
+    for access in both {
+        EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+        let turns = movements.all().iter().zip(&mut access.movements);
+        turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
+        let passages = movements.passages().iter().zip(&mut access.passages);
+        passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
+    }
 }
 
 fn price(cm: f64) -> u64 {

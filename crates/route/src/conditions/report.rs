@@ -52,7 +52,7 @@ impl Condition {
                 title_of(network, PartKind::Turn { from: *from, to: *to })
             }
             ConditionAt::Junction(node) => {
-                let edges: Vec<EdgeNo> = network.crossings.at(*node).to_vec();
+                let edges = edges_at(network, *node);
                 let mut titles: Vec<String> =
                     edges.iter().map(|&edge| title_of(network, PartKind::Edge(edge))).collect();
                 titles.sort();
@@ -185,8 +185,20 @@ impl Condition {
     }
 }
 
+/// The edges that meet at a node. Where two roads meet, the network keeps no list of them.
+fn edges_at(network: &Network, node: NodeId) -> Vec<EdgeNo> {
+    let known = network.crossings.at(node);
+    if !known.is_empty() {
+        return known.to_vec();
+    }
+    let meets = |edge: &EdgeNo| {
+        network.edges.get(edge.index()).is_some_and(|edge| edge.from_node == node || edge.to_node == node)
+    };
+    EdgeNo::first(network.edges.len()).filter(meets).collect()
+}
+
 fn node_position(network: &Network, node: NodeId) -> Option<LonLat> {
-    let edge = network.crossings.at(node).iter().find_map(|&edge| network.edges.get(edge.index()))?;
+    let edge = edges_at(network, node).into_iter().find_map(|edge| network.edges.get(edge.index()))?;
     let mut line = network.positions(edge);
     if edge.from_node == node { line.next() } else { line.next_back() }
 }

@@ -7,8 +7,10 @@ use super::fitter::{Fitter, Fitting, Unfit, network_of};
 use super::joint;
 use super::sections::Section;
 use crate::assemble::{DrivenWay, PartKind};
+use crate::driver::Driver;
 use crate::graph::Access;
 use crate::obstacles::Refutation;
+use crate::roads::Roads;
 use crate::stop::{Stop, Stopped};
 use crate::turn_ends::TurnEnds;
 use crate::turning::MadeTurns;
@@ -114,8 +116,11 @@ impl Fitter {
 
     /// Certifies ways on the roads as they are now.
     pub(super) fn new_whole(&self) -> Whole {
-        let driver = Arc::clone(&self.driver);
-        let turns = Box::new(MadeTurns { driver, more: MORE_PATHS, unsafe_too: true });
-        Whole::new(&self.roads, Arc::clone(&self.driver), turns)
+        Self::whole_of(&self.roads, &self.driver)
+    }
+
+    pub(super) fn whole_of(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Whole {
+        let turns = Box::new(MadeTurns { driver: Arc::clone(driver), more: MORE_PATHS, unsafe_too: true });
+        Whole::new(roads, Arc::clone(driver), turns)
     }
 }

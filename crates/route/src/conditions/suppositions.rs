@@ -237,6 +237,22 @@ impl Suppositions {
             || other.paved_m.iter().any(|(key, value)| self.paved_m.get(key) != Some(value))
     }
 
+    /// The edges of a way whose width is supposed.
+    pub(super) fn wider_edges<'w>(&'w self, way: &'w [EdgeNo]) -> impl Iterator<Item = EdgeNo> + 'w {
+        let wider = |edge: EdgeNo| self.widths_m.range((edge, Policy::Lane)..=(edge, Policy::Carriageway)).next();
+        way.iter().copied().filter(move |&edge| wider(edge).is_some())
+    }
+
+    /// The edges of a way at which something is supposed.
+    pub(super) fn edges_of<'w>(&'w self, network: &'w Network, way: &'w [EdgeNo]) -> impl Iterator<Item = EdgeNo> + 'w {
+        let paved = |edge: &Edge| [edge.from_node, edge.to_node].iter().any(|node| self.paved_m.contains_key(node));
+        way.iter().copied().filter(move |&edge| {
+            self.widths_m.range((edge, Policy::Lane)..=(edge, Policy::Carriageway)).next().is_some()
+                || self.kerbs_m.keys().any(|(_, between)| between.contains(&edge))
+                || network.edges.get(edge.index()).is_some_and(paved)
+        })
+    }
+
     /// The edges whose widths differ from other suppositions.
     pub(crate) fn differing_edges(&self, other: &Self) -> FxHashSet<EdgeNo> {
         differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect()

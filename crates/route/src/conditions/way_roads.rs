@@ -15,7 +15,7 @@ pub(super) fn roads(network: &Network, way: &[EdgeNo]) -> Vec<usize> {
 }
 
 /// Whether an edge belongs to the road of the edge before it: the same way, name or reference, or straight on.
-fn goes_on(network: &Network, strokes: &[u32], a: EdgeNo, b: EdgeNo) -> bool {
+pub(super) fn goes_on(network: &Network, strokes: &[u32], a: EdgeNo, b: EdgeNo) -> bool {
     let stroke = |edge: EdgeNo| strokes.get(edge.index()).filter(|&&stroke| stroke != u32::MAX);
     let road = |edge: EdgeNo| network.edges.get(edge.index()).map(|edge| network.road(edge));
     let same = |a: &Road, b: &Road| {
