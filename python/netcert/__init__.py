@@ -48,7 +48,7 @@ from .errors import (
     VehicleError,
 )
 from .region import CertifiedSet, Region, open  # noqa: A004
-from .routes import Condition, Obstacle, Part, Route, Routes, StripUse
+from .routes import Condition, NamedPlace, Obstacle, Part, Route, Routes, StripUse
 from .table import Table
 
 __all__ = [
@@ -60,6 +60,7 @@ __all__ = [
     "CorridorError",
     "Explanation",
     "Limiting",
+    "NamedPlace",
     "NetcertError",
     "NotFound",
     "Obstacle",

@@ -60,9 +60,9 @@ def routes(found: Routes, **options: Any) -> folium.Map:
         elif geometry["type"] == "Point" and geometry["coordinates"]:
             lon, lat = geometry["coordinates"]
             points += 1
-            condition = told.get("feature") == "condition"
-            words = _condition(told) if condition else _obstacle(told)
-            colour = CONDITIONAL if condition else OBSTACLE
+            what = told.get("feature")
+            words = {"condition": _condition, "nothing_helps": _hopeless}.get(what, _obstacle)(told)
+            colour = CONDITIONAL if what == "condition" else OBSTACLE
             folium.CircleMarker((lat, lon), radius=8, color=colour, fill=True, tooltip=f"{points}. {words}").add_to(drawn)
             corners.append((lat, lon))
     if corners:
@@ -74,6 +74,10 @@ def routes(found: Routes, **options: Any) -> folium.Map:
 
 def _condition(told: dict[str, Any]) -> str:
     return f"{told['title']}: {told['kind'].replace('_', ' ')} at least {told['needed']} {told['unit']}"
+
+
+def _hopeless(told: dict[str, Any]) -> str:
+    return f"{told['title']}: nothing that was tried opens it"
 
 
 def _obstacle(told: dict[str, Any]) -> str:

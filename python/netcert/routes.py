@@ -75,6 +75,17 @@ Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
+class NamedPlace:
+    """A place for which no kerb radius, width or paving does that the search for conditions tries."""
+
+    kind: str
+    title: str
+    place: Place | None
+    """Longitude and latitude, degrees."""
+    ids: Members
+
+
+@dataclass(frozen=True)
 class Condition:
     """What has to be so on site for a conditional route to hold. Nothing says that it is."""
 
@@ -218,12 +229,18 @@ class Routes:
         ids = ("edge_id", "from_edge", "to_edge")
         return [Obstacle(**_members(one, Obstacle, ids)) for one in known]
 
+    @property
+    def nothing_helps(self) -> list[NamedPlace]:
+        """The places that no condition opens, where no route is certified under any. Ways without them were tried, too."""
+        ids = ("edge_id", "from_edge", "to_edge")
+        return [NamedPlace(**_members(one, NamedPlace, ids)) for one in self._members["nothing_helps"]]
+
     def to_dict(self) -> Members:
         """The answer as `netcert route --format json` writes it."""
         return self._answer.to_dict()
 
     def to_geojson(self) -> Members:
-        """Routes and their parts as lines; obstacles and conditions as points."""
+        """Routes and their parts as lines; obstacles, conditions and places that no condition opens as points."""
         return self._answer.to_geojson()
 
     def to_geopandas(self) -> geopandas.GeoDataFrame:

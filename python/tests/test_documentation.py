@@ -28,7 +28,7 @@ def described():
 @pytest.mark.parametrize(("name", "value"), list(described()))
 def test_each_public_name_is_described_and_its_examples_run(name, value):
     text = inspect.getdoc(value)
-    known = name.split(".")[0] in ("CertifiedSet", "Part", "Obstacle", "Condition") and "." in name
+    known = name.split(".")[0] in ("CertifiedSet", "Part", "Obstacle", "NamedPlace", "Condition") and "." in name
     assert text or known, f"{name} has no docstring"
     test = doctest.DocTestParser().get_doctest(text or "", {}, name, None, None)
     flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

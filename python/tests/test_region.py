@@ -118,6 +118,29 @@ def test_a_route_that_is_not_there_names_what_blocks(demo):
     assert obstacle.place is not None and len(blocked[0]) == 0 and blocked[0].conditional is None
 
 
+class OnlyANarrowRing:
+    """An answer without a route even under conditions, as `netcert route` writes it."""
+
+    place = {"kind": "roundabout", "from_edge": 7, "to_edge": 8, "title": "High Street over the roundabout into Mill Lane"}
+
+    def to_dict(self):
+        nothing_helps = [{**self.place, "place": [8.5, 49.4]}]
+        return {"routes": [], "conditional": None, "obstacles": [], "nothing_helps": nothing_helps}
+
+    def to_geojson(self):
+        geometry = {"type": "Point", "coordinates": [8.5, 49.4]}
+        properties = {**self.place, "feature": "nothing_helps", "vehicle_id": "EU-SEMI16.5"}
+        return {"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": geometry, "properties": properties}]}
+
+
+def test_a_place_that_no_condition_opens_is_named_and_drawn():
+    found = netcert.Routes(OnlyANarrowRing())
+    [ring] = found.nothing_helps
+    assert (ring.kind, ring.place, ring.ids) == ("roundabout", (8.5, 49.4), {"from_edge": 7, "to_edge": 8})
+    drawn = found.explore(tiles=None).get_root().render()
+    assert "over the roundabout into Mill Lane: nothing that was tried opens it" in drawn
+
+
 def test_a_conditional_route_is_never_safe(demo):
     frame = demo.edges(TRUCK, verdict="unsafe").to_geopandas()
     _, (start, _) = safe_turn(demo)
