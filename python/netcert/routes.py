@@ -76,7 +76,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class NamedPlace:
-    """A place for which no kerb radius, width or paving does that the search for conditions tries."""
+    """A place that stays closed whatever kerb radius, width or paving the search for conditions supposes."""
 
     kind: str
     title: str

@@ -57,11 +57,14 @@ impl Planner {
         searching();
         let kept = self.fitter.take();
         let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
-        let mut answer = self.fit(&mut fitter, question, snapped.clone(), first, stop);
+        let mut left = WAYS.min(question.tries.max(1));
+        let mut answer = self.fit(&mut fitter, &mut left, snapped.clone(), first, stop);
         // What nothing opens on one way may be open on another, with other roads before and behind it.
-        if let Ok(Err(hopeless)) = &answer {
+        if let Ok(Err(hopeless)) = &answer
+            && !hopeless.gave_up
+        {
             let places = hopeless.places.clone();
-            answer = self.fit(&mut fitter, question, snapped, access(RoadPrice::ByRoad), stop);
+            answer = self.fit(&mut fitter, &mut left, snapped, access(RoadPrice::ByRoad), stop);
             if let Ok(Err(again)) = &mut answer {
                 again.places.extend(places);
                 again.places.sort_unstable();
@@ -72,17 +75,18 @@ impl Planner {
         Ok(answer?)
     }
 
-    /// Fits one way after the other. Places for which nothing does are left out of the next one.
+    /// Fits one way after the other, as many as are `left`. Places for which nothing does are left out of the next one.
     fn fit(
         &self,
         fitter: &mut Fitter,
-        question: &Question,
+        left: &mut usize,
         snapped: Vec<Snapped>,
         mut access: ConditionalAccess,
         stop: &Stop,
     ) -> Result<Result<Conditional, Hopeless>, Stopped> {
         let mut hopeless = Hopeless::default();
-        for _ in 0..WAYS.min(question.tries.max(1)) {
+        while *left > 0 {
+            *left -= 1;
             let Some((mut found, start, end)) = self.way(&access.search, &snapped)? else { return Ok(Err(hopeless)) };
             let way = DrivenWay { drive: &found.drive, start, end };
             match fitter.fit(&way, &access.lacking, stop)? {

@@ -54,11 +54,11 @@ impl ConditionalAccess {
                 *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
             }
         }
-        let mut search = match by {
+        prefer_measured(network, movements, &mut lacking);
+        let search = match by {
             RoadPrice::ByEdge => lacking.clone(),
             RoadPrice::ByRoad => by_road(roads, &lacking),
         };
-        prefer_measured(network, movements, [&mut lacking, &mut search]);
         Self { lacking, search }
     }
 
@@ -73,8 +73,8 @@ impl ConditionalAccess {
     }
 }
 
-/// What a search pays where these edges and steps lack room: an edge its length, and whoever comes to it from another road or from an edge that
-/// lacks less the rest.
+/// What a search pays where these edges and steps lack room. An edge costs its length. Its other price is paid by a step that comes from another
+/// road, and by a step from an edge of its road as far as that edge cost less.
 fn by_road(roads: &Roads, lacking: &Access) -> Access {
     let (network, movements) = (&roads.network, &roads.movements);
     let strokes = network.strokes_of_edges();
@@ -102,7 +102,7 @@ fn by_road(roads: &Roads, lacking: &Access) -> Access {
 }
 
 /// Makes cheap what lacks room beside a measurement: the way for which somebody measured is looked at first.
-fn prefer_measured(network: &Network, movements: &Movements, both: [&mut Access; 2]) {
+fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access) {
     if network.site.is_empty() {
         return;
     }
@@ -120,13 +120,11 @@ fn prefer_measured(network: &Network, movements: &Movements, both: [&mut Access;
             *price = (*price / MEASURED_SHARE).max(1);
         }
     };
-    for access in both {
-        EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
-        let turns = movements.all().iter().zip(&mut access.movements);
-        turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
-        let passages = movements.passages().iter().zip(&mut access.passages);
-        passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
-    }
+    EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+    let turns = movements.all().iter().zip(&mut access.movements);
+    turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
+    let passages = movements.passages().iter().zip(&mut access.passages);
+    passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
 }
 
 fn price(cm: f64) -> u64 {
