@@ -96,6 +96,8 @@ class Condition:
     unit: str
     place: Place | None
     """Longitude and latitude, degrees."""
+    attested: Members | None
+    """Who says that the vehicle goes there all the same (`by`, `name`, `tags`, `law`). That is no proof and no measurement."""
     members: Members
     """All members, as `netcert route --format json` has them."""
 
@@ -165,7 +167,7 @@ class Route:
     @cached_property
     def conditions(self) -> list[Condition]:
         """What has to be so on site. Empty for a route that is certified."""
-        names = ("number", "kind", "title", "needed", "unit")
+        names = ("number", "kind", "title", "needed", "unit", "attested")
         known = self._members["conditions"]
         return [
             Condition(**{name: one[name] for name in names}, place=_place(one.get("place")), members=one) for one in known

@@ -6,9 +6,11 @@ use netcert_testing::routing;
 
 use ascii_map::AsciiMap;
 use netcert::evidence::Quantity;
+use netcert::network::EdgeNo;
 use netcert::osm::facts::Policy;
 use netcert::route::{self, *};
 use netcert::stop::Stop;
+use netcert::store::{Attestation, AttestedBy};
 use netcert::turns::Kerbs;
 use routing::TestRegion;
 
@@ -247,4 +249,49 @@ fn a_corner_where_no_other_road_meets_is_a_condition() {
     assert!(found.route.certificate.result.safe());
     let corner = found.conditions.iter().find(|condition| condition.quantity == Quantity::KerbRadius);
     assert!(corner.is_some_and(|corner| corner.assumed_m == Some(3.0)), "{:?}", found.conditions);
+}
+
+/// Two ways as long as each other around a block, each with two corners.
+fn block() -> AsciiMap {
+    AsciiMap::placed(&[
+        ('W', [-300.0, 0.0]),
+        ('a', [0.0, 0.0]),
+        ('N', [0.0, 200.0]),
+        ('n', [400.0, 200.0]),
+        ('S', [0.0, -200.0]),
+        ('s', [400.0, -200.0]),
+        ('b', [400.0, 0.0]),
+        ('E', [700.0, 0.0]),
+    ])
+    .way("Wa", TAGS)
+    .way("NaS", TAGS)
+    .way("Nn", TAGS)
+    .way("Ss", TAGS)
+    .way("nbs", TAGS)
+    .way("bE", TAGS)
+}
+
+#[test]
+fn a_way_under_conditions_prefers_what_is_attested_and_says_who_does() {
+    let region = region(&block(), 3.0);
+    let numbers =
+        |ends: &[&str]| -> Vec<EdgeNo> { ends.iter().map(|ends| ascii_map::edge(&region.network, ends)).collect() };
+    let (over_north, over_south) = (["Wa", "aN", "Nn", "nb", "bE"], ["Wa", "aS", "Ss", "sb", "bE"]);
+    for way in [over_north, over_south] {
+        let edges = numbers(&way);
+        let turns = edges.windows(2).map(|pair| [pair[0].get(), pair[1].get()]).collect();
+        let all =
+            [Attestation { by: AttestedBy::Register, edges: edges.iter().map(|edge| edge.get()).collect(), turns }];
+        let mut driver = region.driver("AU-SEMI19");
+        driver.attested = Attested::new(&all);
+        let mut planner = region.planner(&driver, Measure::Distance);
+        let places = vec![on(&region, "Wa"), on(&region, "bE")];
+        let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
+        let found = planner.under_conditions(&question, &[], &Stop::never()).unwrap().unwrap();
+        assert_eq!(found.route.drive.edges, edges, "{way:?}");
+        assert!(!found.conditions.is_empty());
+        for condition in &found.conditions {
+            assert_eq!(condition.attested_by, Some(AttestedBy::Register), "{:?}", condition.at);
+        }
+    }
 }

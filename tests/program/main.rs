@@ -4,6 +4,7 @@
 
 mod all_outputs;
 mod at_time;
+mod attested;
 mod circles;
 mod cli;
 mod columns;

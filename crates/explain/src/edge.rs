@@ -5,6 +5,7 @@ use super::hints::{self, Hints};
 use super::legal::RuleConflict;
 use super::no_bound;
 use super::ride::NominalRide;
+use super::signs;
 use super::tightest::{HingePlace, LimitingPlace};
 use super::{Explanation, Geometry, LaneGroup, RoadFacts};
 use crate::certify::verdict;
@@ -54,7 +55,8 @@ pub fn explain_edge(
     }
     stop.check()?;
     let (road, vehicle) = (Some(road), model.vehicle.clone());
-    Ok(Some(Explanation { road, turn: None, vehicle, verdict, geometry, hints, conflict }))
+    let signs = if let Verdict::Unsafe(_) = verdict { signs::of(network, &[edge], &vehicle) } else { Vec::new() };
+    Ok(Some(Explanation { road, turn: None, vehicle, verdict, geometry, hints, conflict, signs }))
 }
 
 impl Explanation {

@@ -50,6 +50,7 @@ pub fn json(e: &Explanation) -> Value {
         "limiting": e.geometry.as_ref().map(|g| limiting(g, &e.vehicle)),
         "hints": hints(e),
         "conflict": conflict,
+        "signs": e.signs.iter().map(|sign| json!({"by": sign.id, "name": sign.name, "tags": sign.tags(), "law": sign.law})).collect::<Vec<_>>(),
     })
 }
 

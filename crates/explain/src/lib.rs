@@ -41,6 +41,7 @@ mod names;
 mod no_bound;
 mod own_corridor;
 mod ride;
+mod signs;
 mod swept_ground;
 #[cfg(test)]
 mod tests;
@@ -64,7 +65,7 @@ pub use words::{Words, words};
 
 use crate::corridor::{Corridor, Frame, Taper};
 use crate::osm::LonLat;
-use crate::osm::facts::{Policy, RoadClass, SupposedLanes, WidthSource};
+use crate::osm::facts::{Designation, Policy, RoadClass, SupposedLanes, WidthSource};
 use crate::rows::{EdgeKey, RoadName};
 use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
@@ -87,6 +88,8 @@ pub struct Explanation {
     pub hints: Hints,
     /// The rule that forbids or cannot be read.
     pub conflict: Option<RuleConflict>,
+    /// Of what is unsafe: the signs and networks on the map that say that the vehicle goes there all the same.
+    pub signs: Vec<&'static Designation>,
 }
 
 /// Roads of a turn that its sentences name.

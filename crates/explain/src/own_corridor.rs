@@ -37,6 +37,15 @@ pub fn explain_corridor(
     let vehicle = model.vehicle.clone();
     Ok(Some((
         certificate,
-        Explanation { road: None, turn: None, vehicle, verdict, geometry: Some(found), hints, conflict: None },
+        Explanation {
+            road: None,
+            turn: None,
+            vehicle,
+            verdict,
+            geometry: Some(found),
+            hints,
+            conflict: None,
+            signs: Vec::new(),
+        },
     )))
 }

@@ -3,6 +3,7 @@
 use super::edge::{edge_verdict, geometry};
 use super::hints::{self, Hints, KerbHint};
 use super::legal::RuleConflict;
+use super::signs;
 use super::{Explanation, Geometry, TurnRoads, no_bound};
 use crate::certify::{MOST_KERB_M, best_of, turn_verdict};
 use crate::corridor::Corridor;
@@ -111,7 +112,9 @@ pub fn explain_turn(
         hints.shorter = no_bound::shorter(&vehicle, &safe, stop)?;
     }
     let (named, conflict) = roads_that_decide(network, facts, model, settings, verdict, stop)?;
-    let explanation = Explanation { road: None, turn: Some(named), vehicle, verdict, geometry, hints, conflict };
+    let ends = [facts.movement.from, facts.movement.to];
+    let signs = if let Verdict::Unsafe(_) = verdict { signs::of(network, &ends, &vehicle) } else { Vec::new() };
+    let explanation = Explanation { road: None, turn: Some(named), vehicle, verdict, geometry, hints, conflict, signs };
     let path = best.map(|(path, _)| path);
     let strip = settings.turn_policy.max(settings.policy);
     let (facts, policy, passage) = (facts.clone(), settings.policy, network.passage_kind(&facts.through));

@@ -3,6 +3,7 @@
 use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
+use super::signs;
 use super::{BodyPart, Explanation, Geometry, HingePlace, LaneGroup, LimitingPlace};
 use crate::corridor::{Taper, TaperCause};
 use crate::network::destination_words;
@@ -62,6 +63,7 @@ pub fn words(e: &Explanation) -> Words {
         reasons.push(format!("The road has a narrow place: {}.", road.narrowed_by.join(", ")));
     }
     reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
+    reasons.extend(e.signs.iter().map(|sign| signs::words(sign)));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 

@@ -128,9 +128,10 @@ fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Con
             ConditionAt::Road(_) => format!("<br>over {}", units.along(length_m)),
             ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => format!("<br>OpenStreetMap node {node}"),
         };
+        let attested = condition.attested().map_or_else(String::new, |by| format!("<br>attested: {}", escaped(&by)));
         let _ = write!(
             page,
-            "<tr><td>{number}</td><td>{}{place}{over}</td><td>{}</td><td class=\"fill\"></td><td class=\"fill\"></td>\
+            "<tr><td>{number}</td><td>{}{place}{over}{attested}</td><td>{}</td><td class=\"fill\"></td><td class=\"fill\"></td>\
              <td class=\"fill\"></td><td class=\"fill\"></td></tr>",
             escaped(&condition.title(network)),
             escaped(&wanted(condition, units))

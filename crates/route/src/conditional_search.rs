@@ -46,7 +46,7 @@ impl Planner {
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
         let access = |by: RoadPrice| {
-            let mut access = ConditionalAccess::new(self.graph.roads(), &self.driver.permits, refuted, by);
+            let mut access = ConditionalAccess::new(self.graph.roads(), &self.driver, refuted, by);
             self.below.iter().for_each(|below| below.add_prices(&mut access.search, &self.graph));
             access
         };
@@ -98,7 +98,8 @@ impl Planner {
                         certified = climbed.unwrap_or(certified);
                     }
                     let kerbs = &self.driver.permits.settings.kerbs;
-                    let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
+                    let mut conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
+                    self.driver.attested.tell(self.network(), &found.drive, &mut conditions);
                     let route = self.route(&found, start, end, certified);
                     return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::attested::Attested;
 use super::driver::Driver;
 use super::permits::{Permit, Permits};
 use super::relative::{Peer, Standings};
@@ -71,7 +72,8 @@ impl Driver {
     ) -> Result<Arc<Self>, NoDriver> {
         let mut permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
         permits.add_rules(&roads.network, &roads.movements, vehicle);
-        Ok(Arc::new(Self { model: Model::new(vehicle)?, permits }))
+        let attested = Attested::new(&database.attestations(&vehicle.id)?);
+        Ok(Arc::new(Self { model: Model::new(vehicle)?, permits, attested }))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Who drives: a vehicle with its permits.
 
+use super::attested::Attested;
 use super::permits::Permits;
 use crate::stet::Model;
 
@@ -10,4 +11,6 @@ pub struct Driver {
     pub model: Model,
     /// Its permits, with the settings under which they were made.
     pub permits: Permits,
+    /// Where it is attested to go. No permit depends on this.
+    pub attested: Attested,
 }

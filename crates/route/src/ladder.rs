@@ -55,7 +55,8 @@ impl Ladder {
     pub fn new(drivers: &[Arc<Driver>], movements: &Movements) -> Result<Self, UnlikeSets> {
         let widest = drivers.iter().max_by_key(|driver| driver.permits.settings.policy).ok_or(UnlikeSets::Empty)?;
         let sets = drivers.iter().map(|driver| driver.permits.clone()).collect();
-        let climbing = Driver { model: widest.model.clone(), permits: Permits::climbing(sets, movements)? };
+        let permits = Permits::climbing(sets, movements)?;
+        let climbing = Driver { model: widest.model.clone(), permits, attested: widest.attested.clone() };
         Ok(Self { climbing: Arc::new(climbing), widest: Arc::clone(widest) })
     }
 }

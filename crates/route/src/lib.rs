@@ -28,6 +28,7 @@
 //! | `title` | titles and places of edges, turns and passages |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route, and on which way |
+//! | `attested` | where a sign or the register says that the vehicle goes |
 //! | `conditions` | what has to hold on site so that a way is certified |
 //! | `conditional_search` | the way with the fewest and smallest conditions |
 //! | `nearest_road` | the road beside a place, and why it may not be used |
@@ -50,6 +51,7 @@ use netcert_rows::settings;
 use netcert_store as store;
 
 mod assemble;
+mod attested;
 mod bans;
 mod best;
 mod blend;
@@ -86,6 +88,7 @@ mod turning;
 mod whole;
 
 pub use assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, passes_over};
+pub use attested::Attested;
 pub use bans::{Bans, Within};
 pub use conditional_search::Hopeless;
 pub use conditions::{Condition, ConditionAt, Conditional, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson};

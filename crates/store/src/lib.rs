@@ -43,6 +43,7 @@ pub use database::row_stream::RowStream;
 pub use error::StoreError;
 pub use provenance::records::{Run, VehicleRecord};
 pub use provenance::signatures::SignatureRecord;
+pub use register::attested::{Attestation, AttestedBy};
 pub use register::evidence::Register;
 pub use results::carry_over::{StoredCertificate, StoredPlans};
 pub use results::checkpoint::{Checkpoint, CheckpointStage, PartOfWork};
@@ -50,7 +51,7 @@ pub use results::pages::PageQuery;
 pub use results::predicate::{ComparisonSign, Literal, Predicate};
 pub use results::query::{Area, QueryOptions, Rows};
 pub use results::relative::{
-    DRIVABLE_BY, IndexedStanding, Reference, ReferenceCertificates, ReferenceReader, VehicleSettings,
+    ATTESTED, DRIVABLE_BY, IndexedStanding, Reference, ReferenceCertificates, ReferenceReader, VehicleSettings,
 };
 pub use results::settings::CertifiedSet;
 pub use results::stream::StraightOn;

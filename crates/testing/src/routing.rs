@@ -97,7 +97,7 @@ impl TestRegion {
         })
         .unwrap();
         let permits = self.with_turns(&model, edges);
-        TestDriver(Arc::new(route::Driver { model, permits }))
+        TestDriver(Arc::new(route::Driver { model, permits, attested: route::Attested::default() }))
     }
 
     /// Permits with turns, certified as the pipeline does.

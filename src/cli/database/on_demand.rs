@@ -89,7 +89,7 @@ pub(crate) fn reference(
     id: &str,
 ) -> anyhow::Result<(Database, Reference)> {
     let settings = set.settings()?;
-    for vehicle in &database.reference_ids(id)? {
+    for vehicle in &database.reference_ids(id, &set.vehicle_id, set.policy)? {
         if let Some(kept) = database.certified_set(vehicle, set.policy)? {
             // Checked as it will be, before its turns are made.
             let kept = kept.settings()?;

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use netcert::rows::{Cell, CertificateRow, CertificateStanding, Relative};
-use netcert::store::{DRIVABLE_BY, ReferenceCertificates, StoreError};
+use netcert::store::{ATTESTED, DRIVABLE_BY, ReferenceCertificates, StoreError};
 
 /// The comparison of a row, if one is asked for.
 pub(crate) fn beside(
@@ -20,6 +20,12 @@ pub(crate) fn scope(reference: &str) -> String {
         return " `as_reference` compares with vehicles that the register of measurements knows to go there, and says nothing elsewhere: by \
                 their certificates on the same road, the vehicle needs no more room than one of them. It makes nothing safe and is no \
                 permit."
+            .to_owned();
+    }
+    if reference == ATTESTED {
+        return " `as_reference` compares with vehicles that a sign on the map, or the register of measurements, says to go there, as far as \
+                they are certified in this database, and says nothing elsewhere: by their certificates on the same road, the vehicle needs \
+                no more room than one of them. It makes nothing safe and is no permit."
             .to_owned();
     }
     format!(

@@ -1,5 +1,6 @@
 //! The answer of `netcert route` as text: certified routes, a route under conditions, or what blocks.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use netcert::network::{Network, PassageKind, destination_words};
@@ -63,6 +64,24 @@ pub(super) fn tell(
     Ok(())
 }
 
+/// Tells who says of the places of conditions that the vehicle goes there all the same.
+fn attested(out: &mut dyn Write, conditional: &Conditional) -> std::io::Result<()> {
+    let mut of: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (number, condition) in (1..).zip(&conditional.conditions) {
+        condition.attested().into_iter().for_each(|by| of.entry(by).or_default().push(number));
+    }
+    if of.is_empty() {
+        return Ok(());
+    }
+    for (by, numbers) in of {
+        let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
+        writeln!(out, "{}", wrapped(&format!("Attested, {}: {by}.", numbers.join(", ")), "  "))?;
+    }
+    let told =
+        "Attested is not proved: the law or a person says that such a vehicle goes there, and nothing here says how.";
+    writeln!(out, "{}\n", wrapped(told, "  "))
+}
+
 /// Tells a route that is certified only under conditions.
 fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &Conditional) -> std::io::Result<()> {
     let (network, found) = (&inputs.roads.network, &conditional.route);
@@ -87,6 +106,7 @@ fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &C
     }
     table.write(out, "  ")?;
     writeln!(out)?;
+    attested(out, conditional)?;
     numbers(out, inputs, found)?;
     writeln!(out)?;
     parts(out, network, found)?;

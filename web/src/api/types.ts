@@ -384,6 +384,8 @@ export interface Condition {
   assumed: number | null;
   needed: number;
   title: string;
+  /** Who says that the vehicle goes there all the same: a sign on the map, or the register of measurements. */
+  attested: { by: string; name: string | null; tags: string | null; law: string | null } | null;
   edge_id?: string | null;
   length_m?: number;
   from_edge?: string | null;

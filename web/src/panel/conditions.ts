@@ -24,8 +24,12 @@ function words({ kind, needed }: Condition): string {
 
 export function conditionItems(route: ConditionalRoute): Item[] {
   return route.conditions.map((condition) => {
-    const { number, place, title, assumed, length_m } = condition;
-    const more = [assumed === null ? "" : `assumed ${length(assumed)}`, length_m ? `over ${distance(length_m)}` : ""];
+    const { number, place, title, assumed, length_m, attested } = condition;
+    const more = [
+      assumed === null ? "" : `assumed ${length(assumed)}`,
+      length_m ? `over ${distance(length_m)}` : "",
+      attested ? `attested, not proved: ${attested.name ? `${attested.name} (${attested.tags})` : "the register knows this vehicle to go here"}` : "",
+    ];
     return { number, place, title, what: words(condition), more: more.filter(Boolean).join(" · "), road: roadOf(route, condition) };
   });
 }

@@ -40,6 +40,7 @@ use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
 use crate::osm::facts::Policy;
+use crate::store::AttestedBy;
 
 /// A route that is certified if all conditions hold.
 #[derive(Debug, Clone)]
@@ -66,6 +67,9 @@ pub struct Condition {
     pub assumed_m: Option<f64>,
     /// The value that it must have at least, metres.
     pub needed_m: f64,
+    /// Who says that the vehicle goes there all the same: an authority by a sign, or the register. That is no measurement, and makes nothing
+    /// safe.
+    pub attested_by: Option<AttestedBy>,
 }
 
 /// The place of a condition.

@@ -4,11 +4,13 @@ use rustc_hash::FxHashSet;
 
 use super::way_roads::goes_on;
 use crate::assemble::PartKind;
+use crate::attested::Attested;
+use crate::driver::Driver;
 use crate::graph::{Access, BARRED};
 use crate::network::{EdgeNo, Movements, Network};
 use crate::obstacles::{self, CENTIMETRE, Refutation};
 use crate::osm::NodeId;
-use crate::permits::{Permit, Permits};
+use crate::permits::Permit;
 use crate::roads::Roads;
 use crate::verdict::{UnsafeReason, Verdict};
 
@@ -23,6 +25,9 @@ const NO_NUMBER_CM: f64 = 50.0;
 const HINGE_CM: f64 = 300.0;
 /// The price of what lacks room beside a measurement is this part of the usual one.
 const MEASURED_SHARE: u64 = 100;
+/// The price of what lacks room where the vehicle is attested to go is this part of the usual one. Assumed: ten attested places cost as
+/// much as one that nobody attests.
+const ATTESTED_SHARE: u64 = 10;
 /// The greatest missing width that counts, centimetres.
 const MOST_MISSING_CM: f64 = 2000.0;
 
@@ -45,9 +50,10 @@ pub(crate) enum RoadPrice {
 
 impl ConditionalAccess {
     /// The access for a vehicle. `refuted` are the ways that failed as a whole without conditions.
-    pub(crate) fn new(roads: &Roads, permits: &Permits, refuted: &[Refutation], by: RoadPrice) -> Self {
+    pub(crate) fn new(roads: &Roads, driver: &Driver, refuted: &[Refutation], by: RoadPrice) -> Self {
         let (network, movements) = (&roads.network, &roads.movements);
-        let mut lacking = permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
+        let mut lacking =
+            driver.permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
         for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
             if let Some(slot) = obstacles::slot(&mut lacking, movements, refutation.at).filter(|slot| **slot == 0) {
                 let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
@@ -55,6 +61,7 @@ impl ConditionalAccess {
             }
         }
         prefer_measured(network, movements, &mut lacking);
+        prefer_attested(&driver.attested, movements, &mut lacking);
         let search = match by {
             RoadPrice::ByEdge => lacking.clone(),
             RoadPrice::ByRoad => by_road(roads, &lacking),
@@ -115,16 +122,35 @@ fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access
         })
         .collect();
     let near = |edge: EdgeNo| measured.get(edge.index()).is_some_and(|&measured| measured);
+    make_cheaper(movements, access, MEASURED_SHARE, near, |from, to| near(from) || near(to));
+}
+
+/// Makes cheap what lacks room where the vehicle is attested to go: there an authority has looked.
+fn prefer_attested(attested: &Attested, movements: &Movements, access: &mut Access) {
+    if !attested.is_empty() {
+        let (edge, turn) = (|edge| attested.edge(edge).is_some(), |from, to| attested.turn(from, to).is_some());
+        make_cheaper(movements, access, ATTESTED_SHARE, edge, turn);
+    }
+}
+
+/// Makes what lacks room cost a part of its price, on these edges and turns.
+fn make_cheaper(
+    movements: &Movements,
+    access: &mut Access,
+    share: u64,
+    edge: impl Fn(EdgeNo) -> bool,
+    turn: impl Fn(EdgeNo, EdgeNo) -> bool,
+) {
     let cheaper = |price: &mut u64| {
         if *price != BARRED && *price > 0 {
-            *price = (*price / MEASURED_SHARE).max(1);
+            *price = (*price / share).max(1);
         }
     };
-    EdgeNo::all().zip(&mut access.edges).filter(|(edge, _)| near(*edge)).for_each(|(_, price)| cheaper(price));
+    EdgeNo::all().zip(&mut access.edges).filter(|(no, _)| edge(*no)).for_each(|(_, price)| cheaper(price));
     let turns = movements.all().iter().zip(&mut access.movements);
-    turns.filter(|(m, _)| near(m.from) || near(m.to)).for_each(|(_, price)| cheaper(price));
+    turns.filter(|(m, _)| turn(m.from, m.to)).for_each(|(_, price)| cheaper(price));
     let passages = movements.passages().iter().zip(&mut access.passages);
-    passages.filter(|(p, _)| near(p.from) || near(p.to)).for_each(|(_, price)| cheaper(price));
+    passages.filter(|(p, _)| turn(p.from, p.to)).for_each(|(_, price)| cheaper(price));
 }
 
 fn price(cm: f64) -> u64 {

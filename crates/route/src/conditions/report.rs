@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::suppositions::disc;
 use super::{Condition, ConditionAt};
 use crate::assemble::PartKind;
+use crate::attested;
 use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
 use crate::osm::{LonLat, NodeId, rounded};
@@ -72,6 +73,12 @@ impl Condition {
         self.assumed_m.map_or(what.clone(), |m| format!("{what} (assumed {m:.2})"))
     }
 
+    /// Who says that the vehicle goes there all the same, as words. `None` if nobody does.
+    #[must_use]
+    pub fn attested(&self) -> Option<String> {
+        self.attested_by.map(attested::words)
+    }
+
     /// Longitude and latitude of the place, degrees.
     #[must_use]
     pub fn place(&self, network: &Network) -> Option<[f64; 2]> {
@@ -120,6 +127,7 @@ impl Condition {
             "needed": self.needed_m,
             "unit": "m",
             "title": self.title(network),
+            "attested": self.attested_by.map(attested::members),
         });
         match &self.at {
             ConditionAt::Road(edges) => {

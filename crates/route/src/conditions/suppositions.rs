@@ -289,7 +289,8 @@ impl Suppositions {
                     continue;
                 }
                 let at = ConditionAt::Road(vec![*edge]);
-                found.push((i, Condition { quantity: width_of(strip), at, assumed_m: Some(assumed_m), needed_m }));
+                let quantity = width_of(strip);
+                found.push((i, Condition { quantity, at, assumed_m: Some(assumed_m), needed_m, attested_by: None }));
             }
         }
         for (&(node, between), &needed_m) in &self.kerbs_m {
@@ -298,13 +299,15 @@ impl Suppositions {
             let assumed_m = kerbs.at(network, node, [from, to]);
             let place = way.iter().position(|edge| between.contains(edge)).unwrap_or(way.len());
             let at = ConditionAt::Corner { node, between };
-            found.push((place, Condition { quantity: Quantity::KerbRadius, at, assumed_m: Some(assumed_m), needed_m }));
+            let (quantity, assumed_m) = (Quantity::KerbRadius, Some(assumed_m));
+            found.push((place, Condition { quantity, at, assumed_m, needed_m, attested_by: None }));
         }
         for (&node, &(_, needed_m)) in &self.paved_m {
             let meets = |edge: &EdgeNo| network.edges.get(edge.index()).is_some_and(|edge| edge.to_node == node);
             let place = way.iter().position(meets).unwrap_or(way.len());
             let at = ConditionAt::Junction(node);
-            found.push((place, Condition { quantity: Quantity::Surface, at, assumed_m: None, needed_m }));
+            let quantity = Quantity::Surface;
+            found.push((place, Condition { quantity, at, assumed_m: None, needed_m, attested_by: None }));
         }
         found.sort_by_key(|(place, _)| *place);
         found.into_iter().map(|(_, condition)| condition).collect()

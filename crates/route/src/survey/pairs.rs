@@ -254,7 +254,7 @@ mod tests {
 
     fn along(edges: impl IntoIterator<Item = u32>, needed_m: f64) -> Condition {
         let at = ConditionAt::Road(edges.into_iter().map(EdgeNo::new).collect());
-        Condition { quantity: Quantity::CarriagewayWidth, at, assumed_m: None, needed_m }
+        Condition { quantity: Quantity::CarriagewayWidth, at, assumed_m: None, needed_m, attested_by: None }
     }
 
     fn made(conditions: Vec<Condition>) -> SurveyStep {

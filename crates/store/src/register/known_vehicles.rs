@@ -19,8 +19,8 @@ impl Database {
     /// The vehicles that the register knows to go somewhere, by id.
     ///
     /// # Errors
-    /// There are none ([`StoreError::NotThere`]); the file cannot be read.
-    pub(crate) fn known_vehicles(&mut self) -> Result<BTreeMap<String, KnownVehicle>, StoreError> {
+    /// The file cannot be read.
+    pub(crate) fn register_vehicles(&mut self) -> Result<BTreeMap<String, KnownVehicle>, StoreError> {
         let places = |table: &str| {
             format!(
                 "SELECT DISTINCT v.vehicle, t.fid - 1 FROM evidence AS v JOIN evidence_place AS p USING (evidence_no) \
@@ -33,7 +33,7 @@ impl Database {
             "edge AS a ON a.edge_id = p.from_edge JOIN edge AS b ON b.edge_id = p.to_edge \
              JOIN turn AS t ON t.from_fid = a.fid AND t.to_fid = b.fid",
         );
-        let known: BTreeMap<String, KnownVehicle> = self.session.run(async |c| {
+        self.session.run(async |c| {
             let mut known: BTreeMap<String, KnownVehicle> = BTreeMap::new();
             for (vehicle, edge) in
                 sqlx::query_as::<_, (String, u32)>(sqlx::AssertSqlSafe(edges)).fetch_all(&mut *c).await?
@@ -44,12 +44,6 @@ impl Database {
                 known.entry(vehicle).or_default().turns.push(turn);
             }
             Ok(known)
-        })?;
-        if known.is_empty() {
-            let detail =
-                "the register knows no vehicle that goes anywhere; add rows `drivable_by` with `netcert evidence add`";
-            return Err(StoreError::NotThere { path: self.session.path.clone(), detail: detail.to_owned() });
-        }
-        Ok(known)
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! Reads the certificates of a reference vehicle beside those of another vehicle.
 //!
 //! [`DRIVABLE_BY`] stands for the vehicles that the register knows to go somewhere: each is compared where it is known to go, and
-//! nowhere else (`known_vehicles`).
+//! nowhere else (`known_vehicles`). [`ATTESTED`] stands for these and for the vehicles that signs admit (`attested`).
 //!
 //! Two sets compare only if they were made with the same settings. [`Database::reference`] checks that; every reader of a reference
 //! begins there. [`ReferenceCertificates`] takes rows in order of the network and reads the reference's certificates along with them, so memory does
@@ -36,6 +36,9 @@ pub type IndexedStanding = (u32, CertificateStanding);
 /// Instead of a vehicle's id: on each road the vehicles that the register knows to go there.
 pub const DRIVABLE_BY: &str = "drivable_by";
 
+/// Instead of a vehicle's id: on each road the certified vehicles that the register or a sign on the map knows to go there.
+pub const ATTESTED: &str = "attested";
+
 /// A vehicle, and the settings that it was, or would be, certified with.
 #[derive(Debug, Clone, Copy)]
 pub struct VehicleSettings<'a> {
@@ -63,14 +66,17 @@ struct ReferenceVehicle {
 }
 
 impl Database {
-    /// The vehicle `reference`, or those of [`DRIVABLE_BY`], as a reference for a set.
+    /// The vehicle `reference`, or those of [`DRIVABLE_BY`] or [`ATTESTED`], as a reference for a set.
     ///
     /// # Errors
-    /// A vehicle is not certified under the set's policy, or the register knows none ([`StoreError::NotThere`]); a vehicle is certified
-    /// with other settings ([`StoreError::NotAlike`]).
+    /// A vehicle is not certified under the set's policy, or none is known ([`StoreError::NotThere`]); a vehicle is certified with other
+    /// settings ([`StoreError::NotAlike`]).
     pub fn reference(&mut self, set: &CertifiedSet, reference: &str) -> Result<Reference, StoreError> {
-        let vehicles = match reference {
-            DRIVABLE_BY => self.known_vehicles()?.into_iter().map(|(id, known)| (id, Some(known))).collect(),
+        let vehicles: Vec<(String, Option<KnownVehicle>)> = match reference {
+            DRIVABLE_BY | ATTESTED => {
+                let known = self.reference_vehicles(reference, &set.vehicle_id, set.policy)?;
+                known.into_iter().map(|(id, known)| (id, Some(known))).collect()
+            }
             _ => vec![(reference.to_owned(), None)],
         };
         let mut all = Vec::new();
@@ -87,15 +93,49 @@ impl Database {
         Ok(Reference { id: reference.to_owned(), policy: set.policy, vehicles: all })
     }
 
-    /// The ids of the vehicles that a reference stands for: of [`DRIVABLE_BY`], those that the register knows to go somewhere.
+    /// The ids of the vehicles that a reference stands for beside a vehicle under a policy. Of [`ATTESTED`] they are certified.
     ///
     /// # Errors
-    /// The register knows none ([`StoreError::NotThere`]); the file cannot be read.
-    pub fn reference_ids(&mut self, reference: &str) -> Result<Vec<String>, StoreError> {
+    /// None is known ([`StoreError::NotThere`]); the file cannot be read.
+    pub fn reference_ids(&mut self, reference: &str, vehicle: &str, policy: Policy) -> Result<Vec<String>, StoreError> {
         match reference {
-            DRIVABLE_BY => Ok(self.known_vehicles()?.into_keys().collect()),
+            DRIVABLE_BY | ATTESTED => Ok(self.reference_vehicles(reference, vehicle, policy)?.into_keys().collect()),
             _ => Ok(vec![reference.to_owned()]),
         }
+    }
+
+    /// The vehicles of [`DRIVABLE_BY`] or [`ATTESTED`], with the places where they are known to go.
+    fn reference_vehicles(
+        &mut self,
+        reference: &str,
+        vehicle: &str,
+        policy: Policy,
+    ) -> Result<BTreeMap<String, KnownVehicle>, StoreError> {
+        let attested = reference == ATTESTED;
+        let mut known = if attested { self.attested_vehicles()? } else { self.register_vehicles()? };
+        let there = known.keys().cloned().collect::<Vec<_>>().join(", ");
+        if attested {
+            let certified = self.certified()?;
+            let is_certified = |id: &str| certified.iter().any(|set| set.vehicle_id == id && set.policy == policy);
+            known.retain(|id, _| id == vehicle || is_certified(id));
+        }
+        let detail = match (there.is_empty(), attested) {
+            _ if !known.is_empty() => return Ok(known),
+            (_, false) => {
+                "the register knows no vehicle that goes anywhere; add rows `drivable_by` with `netcert evidence add`"
+                    .to_owned()
+            }
+            (true, true) => {
+                "no sign on the map and no row `drivable_by` of the register says that a vehicle goes anywhere"
+                    .to_owned()
+            }
+            (false, true) => format!(
+                "roads are attested for {there}, and none of them is certified under the {} policy; certify one with `netcert \
+                 certify --vehicle ID`",
+                policy.name()
+            ),
+        };
+        Err(StoreError::NotThere { path: self.session.path.clone(), detail })
     }
 
     /// Checks that two vehicles were, or would be, certified with the same settings under the same policy.
@@ -212,7 +252,7 @@ fn differences(settings: &Settings, others: &Settings) -> String {
 }
 
 impl Reference {
-    /// The vehicle's id, or [`DRIVABLE_BY`].
+    /// The vehicle's id, or [`DRIVABLE_BY`], or [`ATTESTED`].
     #[must_use]
     pub fn id(&self) -> &str {
         &self.id

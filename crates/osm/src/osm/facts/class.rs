@@ -9,7 +9,7 @@ use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::{SectionReader, Sharing};
 use crate::osm::facts::speed::SpeedTags;
-use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, tag_lines};
+use crate::osm::facts::{Direction, Legal, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts, tag_lines};
 use crate::words::Named as _;
 
 /// Every reason for which [`way_facts`] leaves a way out.
@@ -192,7 +192,10 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     let oneway = legal.oneway(untagged, |_| true).unwrap_or(general);
     let traffic = traffic(&basics, &legal, untagged, general);
     legal.note_rules(&mut notes);
-    let mut legals = [Direction::Forward, Direction::Backward].map(|direction| legal.resolve(direction, untagged));
+    let mut legals = [Direction::Forward, Direction::Backward].map(|direction| {
+        let resolved = legal.resolve(direction, untagged);
+        Legal { tags: tag_lines::merged(resolved.tags.as_deref(), legal.signs(direction).as_deref()), ..resolved }
+    });
     let sharing = match basics.oneway {
         Some(OnewayTag::Reversible) => Sharing::Reversible,
         Some(OnewayTag::Alternating) => Sharing::Alternating,

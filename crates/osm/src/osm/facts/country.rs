@@ -124,6 +124,13 @@ impl Countries {
         Jurisdiction { left_hand_traffic: self.left_hand_traffic.unwrap_or(found.left_hand_traffic), ..found }
     }
 
+    /// The codes of the regions around a position, the smallest first: states (ISO 3166-2) and countries.
+    #[must_use]
+    pub fn regions(&self, position: LonLat) -> Vec<&str> {
+        let (lon, lat) = position.degrees();
+        LatLon::new(lat, lon).map_or_else(|_| Vec::new(), |at| self.boundaries.ids(at))
+    }
+
     fn look_up(&self, position: LonLat) -> Jurisdiction {
         let (lon, lat) = position.degrees();
         let Ok(at) = LatLon::new(lat, lon) else { return Jurisdiction::NOWHERE };
@@ -166,6 +173,13 @@ mod tests {
             let jurisdiction = countries.jurisdiction(at(lon, lat));
             assert_eq!((&jurisdiction.country, jurisdiction.left_hand_traffic), (country, left), "{name}");
         }
+    }
+
+    #[test]
+    fn places_have_a_state() {
+        let countries = Countries::load().unwrap();
+        assert_eq!(countries.regions(at(-83.0, 39.96)), ["US-OH", "US"]);
+        assert_eq!(countries.regions(at(-30.0, 40.0)), Vec::<&str>::new());
     }
 
     /// One place or more of every country and territory that keeps left, islands far from the rest of their state above all.

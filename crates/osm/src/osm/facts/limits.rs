@@ -124,6 +124,11 @@ impl<'t> LegalTags<'t> {
         legal
     }
 
+    /// The tags by which an authority signs a direction for vehicles, `key=value` lines in order. Of nodes they sign no road.
+    pub(super) fn signs(&self, direction: Direction) -> Option<Box<str>> {
+        self.rules.signs(direction)
+    }
+
     /// The directions of travel that exist for some vehicle of `those` classes, if tags give them by vehicle or time.
     pub(super) fn oneway(&self, untagged: Oneway, those: impl Fn(&crate::vehicle::Class) -> bool) -> Option<Oneway> {
         self.rules.oneway(untagged, those)

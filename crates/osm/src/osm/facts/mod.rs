@@ -8,6 +8,7 @@ mod areas;
 mod backdrop;
 mod class;
 mod country;
+mod designations;
 mod kerb_reader;
 mod keys;
 mod lane_lists;
@@ -44,6 +45,7 @@ pub use areas::{AreaKind, area_kind};
 pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
 pub use class::{LEFT_OUT_REASONS, class_and_link, highway, way_facts};
 pub use country::{Countries, CountriesError, Jurisdiction, TrafficSide};
+pub use designations::{Designation, Designations, DesignationsError};
 pub use legal::{At, Judgement, RuleSet};
 pub use limit_kind::LimitKind;
 pub use notes::{Note, Notes};
@@ -277,8 +279,9 @@ pub struct Legal {
     /// What depends on the vehicle's class or on the time. Where there are rules, they alone decide, and the members above say what holds for
     /// a lorry in general.
     pub rules: Option<RuleSet>,
-    /// The tags behind limits, access and barriers as the map has them, `key=value` lines in order. Beside rules only those of barriers.
-    /// `None` where nothing is limited, or the source has no tags. People read them; no verdict depends on them.
+    /// The tags behind limits, access and barriers as the map has them, and those of [`Designations`], `key=value` lines in order. Beside
+    /// rules only those of barriers and designations. `None` where nothing is limited or signed, or the source has no tags. No verdict
+    /// depends on them.
     pub tags: Option<Box<str>>,
 }
 

@@ -1,10 +1,10 @@
-//! Which tag stands behind a plain limit, plain access or a barrier.
+//! Which tag stands behind a plain limit, plain access, a barrier or a designation.
 
 use super::{Direction, Legal, Property, RuleTags};
 use crate::osm::facts::access::permission;
 use crate::osm::facts::keys::PASSAGE_KEYS;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Limit, Permission, tag_lines};
+use crate::osm::facts::{Designations, Limit, Permission, tag_lines};
 
 /// Keys of access for lorries and for all motor vehicles, the most specific one first.
 const HGV: [&str; 1] = ["hgv"];
@@ -39,12 +39,24 @@ impl RuleTags<'_> {
                 && parts.all(|part| part != other && part != "conditional")
         };
         let limits = self.tags().iter().filter(|(key, _)| is_limit(key));
-        let mut all: Vec<&(&str, &str)> = closing.chain(limits).collect();
-        all.sort_unstable();
-        let mut lines = String::new();
-        all.iter().for_each(|(key, value)| tag_lines::add(&mut lines, key, value));
-        (!lines.is_empty()).then(|| lines.into())
+        in_order(closing.chain(limits))
     }
+
+    /// The tags of [`Designations`] that a direction has, `key=value` lines in order.
+    pub(in crate::osm::facts) fn signs(&self, side: Direction) -> Option<Box<str>> {
+        let other = if side == Direction::Forward { ":backward" } else { ":forward" };
+        let known = Designations::builtin();
+        in_order(self.tags().iter().filter(|(key, value)| !key.ends_with(other) && known.has_tag(key, value)))
+    }
+}
+
+/// Tags as lines in order. `None` if there are none.
+fn in_order<'t>(tags: impl Iterator<Item = &'t (&'t str, &'t str)>) -> Option<Box<str>> {
+    let mut all: Vec<&(&str, &str)> = tags.collect();
+    all.sort_unstable();
+    let mut lines = String::new();
+    all.iter().for_each(|(key, value)| tag_lines::add(&mut lines, key, value));
+    (!lines.is_empty()).then(|| lines.into())
 }
 
 impl Legal {

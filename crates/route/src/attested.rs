@@ -1,0 +1,104 @@
+//! Where a vehicle is attested to go: by a sign or a network on the map, or by the register of measurements.
+//!
+//! What is attested is not certified. It tells which conditions of a route an authority has answered in its way, and the search for a way
+//! under conditions prefers it.
+
+use rustc_hash::FxHashMap;
+use serde_json::{Value, json};
+
+use super::conditions::{Condition, ConditionAt};
+use super::drive::Drive;
+use crate::network::{EdgeNo, Network};
+use crate::osm::NodeId;
+use crate::store::{Attestation, AttestedBy};
+
+/// The edges and turns on which one vehicle is attested, and by whom.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Attested {
+    edges: FxHashMap<EdgeNo, AttestedBy>,
+    turns: FxHashMap<[EdgeNo; 2], AttestedBy>,
+}
+
+impl Attested {
+    /// What a database says of a vehicle. Of several that attest one place, the first counts.
+    #[must_use]
+    pub fn new(all: &[Attestation]) -> Self {
+        let mut attested = Self::default();
+        for Attestation { by, edges, turns } in all {
+            for &edge in edges {
+                attested.edges.entry(EdgeNo::new(edge)).or_insert(*by);
+            }
+            for ends in turns {
+                attested.turns.entry(ends.map(EdgeNo::new)).or_insert(*by);
+            }
+        }
+        attested
+    }
+
+    /// Whether nothing is attested.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.edges.is_empty() && self.turns.is_empty()
+    }
+
+    /// Who attests an edge.
+    #[must_use]
+    pub fn edge(&self, edge: EdgeNo) -> Option<AttestedBy> {
+        self.edges.get(&edge).copied()
+    }
+
+    /// Who attests the turn or passage from one edge into another.
+    #[must_use]
+    pub fn turn(&self, from: EdgeNo, to: EdgeNo) -> Option<AttestedBy> {
+        self.turns.get(&[from, to]).copied()
+    }
+
+    /// Who attests all of these edges: of several, who attests the first.
+    fn road(&self, edges: &[EdgeNo]) -> Option<AttestedBy> {
+        let all: Option<Vec<AttestedBy>> = edges.iter().map(|&edge| self.edge(edge)).collect();
+        all?.first().copied()
+    }
+
+    /// Who attests what a way drives at a node: the turn or passage there, or the road if the way goes straight on.
+    fn node(&self, network: &Network, strokes: &[u32], drive: &Drive, node: NodeId) -> Option<AttestedBy> {
+        let ends = |edge: EdgeNo| network.edges.get(edge.index()).is_some_and(|edge| edge.to_node == node);
+        let join = drive.joins().find(|join| ends(join.from) || join.arcs.iter().any(|&arc| ends(arc)))?;
+        let stroke = |edge: EdgeNo| strokes.get(edge.index()).filter(|&&stroke| stroke != u32::MAX);
+        let straight_on = join.arcs.is_empty() && stroke(join.from).is_some() && stroke(join.from) == stroke(join.to);
+        if straight_on { self.road(&[join.from, join.to]) } else { self.turn(join.from, join.to) }
+    }
+
+    /// Tells each condition of a way who attests the place of it.
+    pub(super) fn tell(&self, network: &Network, drive: &Drive, conditions: &mut [Condition]) {
+        if self.is_empty() {
+            return;
+        }
+        let strokes = network.strokes_of_edges();
+        for condition in conditions {
+            condition.attested_by = match &condition.at {
+                ConditionAt::Road(edges) => self.road(edges),
+                ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => {
+                    self.node(network, &strokes, drive, *node)
+                }
+            };
+        }
+    }
+}
+
+/// Who attests, as words.
+pub(super) fn words(by: AttestedBy) -> String {
+    match by {
+        AttestedBy::Register => "the register of measurements knows this vehicle to go here".to_owned(),
+        AttestedBy::Designation(sign) => format!("{} ({}), {}", sign.name, sign.tags(), sign.law),
+    }
+}
+
+/// Who attests, as JSON.
+pub(super) fn members(by: AttestedBy) -> Value {
+    match by {
+        AttestedBy::Register => json!({"by": "register", "name": null, "tags": null, "law": null}),
+        AttestedBy::Designation(sign) => {
+            json!({"by": sign.id, "name": sign.name, "tags": sign.tags(), "law": sign.law})
+        }
+    }
+}
