@@ -9,8 +9,8 @@ use netcert::evidence::Quantity;
 use netcert::network::EdgeNo;
 use netcert::osm::facts::Policy;
 use netcert::route::{self, *};
+use netcert::rows::{Attestation, AttestedBy};
 use netcert::stop::Stop;
-use netcert::store::{Attestation, AttestedBy};
 use netcert::turns::Kerbs;
 use routing::TestRegion;
 

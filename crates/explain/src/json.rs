@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::words::words;
 use super::{BodyPart, Explanation, Geometry, KerbHint, LaneGroup, ShorterHint};
 use crate::osm::facts::WidthSource;
+use crate::rows::AttestedBy;
 use crate::vehicle::Vehicle;
 use netcert_base::words::{Named as _, verdict_words};
 
@@ -50,7 +51,7 @@ pub fn json(e: &Explanation) -> Value {
         "limiting": e.geometry.as_ref().map(|g| limiting(g, &e.vehicle)),
         "hints": hints(e),
         "conflict": conflict,
-        "signs": e.signs.iter().map(|sign| json!({"by": sign.id, "name": sign.name, "tags": sign.tags(), "law": sign.law})).collect::<Vec<_>>(),
+        "signs": e.signs.iter().map(|sign| AttestedBy::Designation(sign).members()).collect::<Vec<_>>(),
     })
 }
 

@@ -24,8 +24,3 @@ pub(super) fn of(network: &Network, edges: &[EdgeNo], vehicle: &Vehicle) -> Vec<
     }
     all
 }
-
-/// A designation in a sentence of its own.
-pub(super) fn words(sign: &Designation) -> String {
-    format!("Attested, not proved: {} ({}), {}.", sign.name, sign.tags(), sign.law)
-}

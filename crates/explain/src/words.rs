@@ -3,10 +3,11 @@
 use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, needed, source_words, strip_name};
 use super::no_bound;
-use super::signs;
 use super::{BodyPart, Explanation, Geometry, HingePlace, LaneGroup, LimitingPlace};
 use crate::corridor::{Taper, TaperCause};
 use crate::network::destination_words;
+use crate::osm::facts::Designation;
+use crate::rows::AttestedBy;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use netcert_base::words::{Named as _, verdict_words};
@@ -63,7 +64,9 @@ pub fn words(e: &Explanation) -> Words {
         reasons.push(format!("The road has a narrow place: {}.", road.narrowed_by.join(", ")));
     }
     reasons.extend(e.road.as_ref().and_then(|road| road.destination_tag.as_deref()).map(destination_only));
-    reasons.extend(e.signs.iter().map(|sign| signs::words(sign)));
+    let attested =
+        |sign: &&'static Designation| format!("Attested, not proved: {}.", AttestedBy::Designation(sign).words());
+    reasons.extend(e.signs.iter().map(attested));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 

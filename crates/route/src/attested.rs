@@ -4,13 +4,12 @@
 //! under conditions prefers it.
 
 use rustc_hash::FxHashMap;
-use serde_json::{Value, json};
 
 use super::conditions::{Condition, ConditionAt};
 use super::drive::Drive;
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
-use crate::store::{Attestation, AttestedBy};
+use crate::rows::{Attestation, AttestedBy};
 
 /// The edges and turns on which one vehicle is attested, and by whom.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -81,24 +80,6 @@ impl Attested {
                     self.node(network, &strokes, drive, *node)
                 }
             };
-        }
-    }
-}
-
-/// Who attests, as words.
-pub(super) fn words(by: AttestedBy) -> String {
-    match by {
-        AttestedBy::Register => "the register of measurements knows this vehicle to go here".to_owned(),
-        AttestedBy::Designation(sign) => format!("{} ({}), {}", sign.name, sign.tags(), sign.law),
-    }
-}
-
-/// Who attests, as JSON.
-pub(super) fn members(by: AttestedBy) -> Value {
-    match by {
-        AttestedBy::Register => json!({"by": "register", "name": null, "tags": null, "law": null}),
-        AttestedBy::Designation(sign) => {
-            json!({"by": sign.id, "name": sign.name, "tags": sign.tags(), "law": sign.law})
         }
     }
 }

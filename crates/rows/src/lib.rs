@@ -8,6 +8,7 @@ use netcert_base::{verdict, words};
 use netcert_osm::osm;
 use netcert_roads::{corridor, turns};
 
+mod attestation;
 mod bounds;
 mod cell;
 mod certificate;
@@ -26,6 +27,7 @@ pub mod settings;
 mod sides;
 mod turn;
 
+pub use attestation::{Attestation, AttestedBy};
 pub use bounds::Bounds;
 pub use cell::{Cell, Column, ColumnKind};
 pub use certificate::CertificateRow;

@@ -43,7 +43,6 @@ pub use database::row_stream::RowStream;
 pub use error::StoreError;
 pub use provenance::records::{Run, VehicleRecord};
 pub use provenance::signatures::SignatureRecord;
-pub use register::attested::{Attestation, AttestedBy};
 pub use register::evidence::Register;
 pub use results::carry_over::{StoredCertificate, StoredPlans};
 pub use results::checkpoint::{Checkpoint, CheckpointStage, PartOfWork};

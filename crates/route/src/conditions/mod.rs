@@ -40,7 +40,7 @@ use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
 use crate::osm::facts::Policy;
-use crate::store::AttestedBy;
+use crate::rows::AttestedBy;
 
 /// A route that is certified if all conditions hold.
 #[derive(Debug, Clone)]

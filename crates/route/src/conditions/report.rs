@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 use super::suppositions::disc;
 use super::{Condition, ConditionAt};
 use crate::assemble::PartKind;
-use crate::attested;
 use crate::evidence::Quantity;
 use crate::network::{EdgeNo, Network};
 use crate::osm::{LonLat, NodeId, rounded};
+use crate::rows::AttestedBy;
 use crate::title::title as title_of;
 use crate::words::Named as _;
 
@@ -76,7 +76,7 @@ impl Condition {
     /// Who says that the vehicle goes there all the same, as words. `None` if nobody does.
     #[must_use]
     pub fn attested(&self) -> Option<String> {
-        self.attested_by.map(attested::words)
+        self.attested_by.map(AttestedBy::words)
     }
 
     /// Longitude and latitude of the place, degrees.
@@ -127,7 +127,7 @@ impl Condition {
             "needed": self.needed_m,
             "unit": "m",
             "title": self.title(network),
-            "attested": self.attested_by.map(attested::members),
+            "attested": self.attested_by.map(AttestedBy::members),
         });
         match &self.at {
             ConditionAt::Road(edges) => {

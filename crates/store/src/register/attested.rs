@@ -10,28 +10,9 @@ use crate::error::StoreError;
 use crate::file::blob;
 use crate::osm::facts::{Countries, Designation, Designations};
 use crate::register::known_vehicles::KnownVehicle;
+use netcert_rows::{Attestation, AttestedBy};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// Who says that a vehicle goes somewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AttestedBy {
-    /// The register of measurements has a row `drivable_by`.
-    Register,
-    /// A sign or a network on the map.
-    Designation(&'static Designation),
-}
-
-/// Where one vehicle is attested to go, and by whom.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Attestation {
-    /// Who says so.
-    pub by: AttestedBy,
-    /// Sorted indices into the network's edges.
-    pub edges: Vec<u32>,
-    /// The first and the last edge of each turn and passage, sorted.
-    pub turns: Vec<[u32; 2]>,
-}
 
 /// The edges that have a designation.
 struct Signed {

@@ -137,8 +137,10 @@ mod tests {
     use crate::osm::facts::{Legal, way_facts};
     use crate::vehicle::Catalogue;
 
-    fn legal(tags: &[(&str, &str)]) -> [Legal; 2] {
-        let all: Vec<(&str, &str)> = [("highway", "primary")].into_iter().chain(tags.iter().copied()).collect();
+    /// Tags as `key=value`, separated by `|` with blanks around.
+    fn legal(tags: &str) -> [Legal; 2] {
+        let tags = tags.split(" | ").filter_map(|tag| tag.split_once('='));
+        let all: Vec<(&str, &str)> = [("highway", "primary")].into_iter().chain(tags).collect();
         let facts = way_facts(&all).unwrap().facts;
         [facts.legal_forward.clone(), facts.legal_backward.clone()]
     }
@@ -163,29 +165,21 @@ mod tests {
 
     #[test]
     fn tags_sign_a_direction() {
-        let cases: [(&[(&str, &str)], [&[&str]; 2]); 9] = [
-            (&[], [&[], &[]]),
-            (&[("hgv", "yes")], [&[], &[]]),
-            (&[("hgv", "designated")], [&["eu-goods-route"], &["eu-goods-route"]]),
-            (&[("hgv:forward", "designated")], [&["eu-goods-route"], &[]]),
-            (&[("hgv:backward", "designated"), ("hgv", "no")], [&[], &["eu-goods-route"]]),
-            (
-                &[("hgv:national_network", "yes"), ("maxheight", "4.2")],
-                [
-                    &["us-national-network", "us-national-network-53"],
-                    &["us-national-network", "us-national-network-53"],
-                ],
-            ),
-            (&[("b_double", "designated")], [&["au-b-double"], &["au-b-double"]]),
-            (
-                &[("roadtrain", "designated"), ("roadtrain:trailers", "3")],
-                [&["au-road-train", "au-road-train-2"], &["au-road-train", "au-road-train-2"]],
-            ),
-            (&[("roadtrain", "yes"), ("roadtrain:trailers", "3")], [&[], &[]]),
-        ];
-        for (tags, expected) in cases {
+        let of_us = ["us-national-network", "us-national-network-53"];
+        let of_au = ["au-road-train", "au-road-train-2"];
+        for (tags, forward, backward) in [
+            ("", &[][..], &[][..]),
+            ("hgv=yes", &[], &[]),
+            ("hgv=designated", &["eu-goods-route"], &["eu-goods-route"]),
+            ("hgv:forward=designated", &["eu-goods-route"], &[]),
+            ("hgv:backward=designated | hgv=no", &[], &["eu-goods-route"]),
+            ("hgv:national_network=yes | maxheight=4.2", &of_us, &of_us),
+            ("b_double=designated", &["au-b-double"], &["au-b-double"]),
+            ("roadtrain=designated | roadtrain:trailers=3", &of_au, &of_au),
+            ("roadtrain=yes | roadtrain:trailers=3", &[], &[]),
+        ] {
             let found = legal(tags);
-            assert_eq!([of(&found[0]), of(&found[1])], expected.map(<[&str]>::to_vec), "{tags:?}");
+            assert_eq!((&of(&found[0])[..], &of(&found[1])[..]), (forward, backward), "{tags:?}");
         }
     }
 
