@@ -14,7 +14,7 @@ use super::memo::{Late, Recent};
 use super::options::Limits;
 use super::problem::Problem;
 use super::roads::RoadIndex;
-use super::search::Finder;
+use super::search::{self, Finder, Settlements};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, DrivingSides, MapNumbers, SetKey};
 use crate::settings::Settings;
@@ -248,10 +248,15 @@ impl RegionState {
         self.finder().map(|_| ())
     }
 
-    /// The index of all roads by their names and refs; the first call makes it.
+    /// The index of all roads by their names and refs, and of named places; the first call makes it.
     pub(super) fn finder(&self) -> Result<Arc<Finder>, Problem> {
-        let make =
-            || Finder::new(self.roads()?.network()).map(Arc::new).map_err(|error| Problem::fault(error.to_string()));
+        let make = || {
+            let everywhere = Bounds { west: -180.0, south: -90.0, east: 180.0, north: 90.0 };
+            let kinds = search::KINDS.map(|(kind, _)| kind);
+            let settlements = Settlements::of(self.read(|database| database.map_backdrop(everywhere, &kinds, 0.0))?);
+            let finder = Finder::new(self.roads()?.network(), settlements);
+            finder.map(Arc::new).map_err(|error| Problem::fault(error.to_string()))
+        };
         self.finder.get(make)
     }
 

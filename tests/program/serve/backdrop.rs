@@ -7,7 +7,7 @@ use super::http::Server;
 use crate::update;
 
 /// The grid of roads with woods around its middle, a pond, a river and a town.
-fn server() -> Server {
+pub(super) fn server() -> Server {
     let place = update::place();
     update::run(&place, "update --db grid.gpkg 1.osc").succeeds();
     Server::over(place, "serve --db grid.gpkg --addr 127.0.0.1:0")

@@ -47,6 +47,24 @@ fn a_search_finds_edges_ways_names_and_places() {
 }
 
 #[test]
+fn a_town_is_found_by_its_name_and_told_beside_its_roads() {
+    let server = super::backdrop::server();
+    let hits = server.json("/api/search?q=midgrid");
+    let town = &hits[0];
+    let expected = [("kind", "place"), ("settlement", "town"), ("name", "Midgrid"), ("title", "Midgrid")];
+    for (member, value) in expected {
+        assert_eq!(town[member], value, "{town}");
+    }
+    assert_eq!(town["town"], Value::Null);
+    assert!(town["edge_id"].is_string(), "the road beside it");
+    let at = |hit: &Value, name: &str| hit[name].as_f64().unwrap();
+    // 700 m east and 100 m north of where equator and meridian meet.
+    assert!((at(town, "lon") - 0.006_288).abs() < 2e-4 && (at(town, "lat") - 0.000_898).abs() < 2e-4, "{town}");
+    let edge = &server.json(&format!("/api/search?q={}", town["edge_id"].as_str().unwrap()))[0];
+    assert_eq!((&edge["town"], &edge["settlement"]), (&json!("Midgrid"), &Value::Null), "{edge}");
+}
+
+#[test]
 fn a_road_is_whole_and_its_summary_is_that_of_its_pieces() {
     let server = Server::demo();
     let rows = server.place.rows(VEHICLE);

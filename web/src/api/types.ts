@@ -130,6 +130,10 @@ export interface SearchHit {
   by_ref: string | null;
   pieces: number;
   highway: string | null;
+  /** Of a named place: its kind. */
+  settlement: "city" | "town" | "suburb" | "village" | "hamlet" | null;
+  /** The named place that it lies in. */
+  town: string | null;
   bbox: [number, number, number, number];
   lon: number;
   lat: number;

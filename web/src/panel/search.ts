@@ -1,4 +1,4 @@
-// The search for a road by name, number or id, or a place by its coordinates. It is a combobox: arrows choose, Enter goes to the road, Escape leaves.
+// The search for a road by name, number or id, or a place by its name or coordinates. It is a combobox: arrows choose, Enter goes to the road, Escape leaves.
 
 import { api } from "../api/client.ts";
 import type { SearchHit } from "../api/types.ts";
@@ -20,7 +20,7 @@ export interface SearchOptions {
   emptied?(): void;
 }
 
-const main: SearchOptions = { id: "search", label: "Find a road by name, number or id, or a place by its coordinates", placeholder: "Road, number or place" };
+const main: SearchOptions = { id: "search", label: "Find a road by name, number or id, or a place by name or coordinates", placeholder: "Road, number or place" };
 
 export class Search {
   readonly element: HTMLElement;
@@ -119,7 +119,7 @@ export class Search {
   #row(hit: SearchHit, index: number): HTMLElement {
     const chosen = index === this.#active;
     const which = { road: `${hit.pieces} pieces`, way: `way ${hit.id}`, edge: `edge ${hit.id}`, place: "place" }[hit.kind];
-    const more = [hit.highway ? className(hit.highway) : null, which];
+    const more = hit.settlement ? [hit.settlement] : [hit.highway ? className(hit.highway) : null, which, hit.town];
     return h(
       "li",
       {

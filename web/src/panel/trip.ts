@@ -102,13 +102,13 @@ export class Trip {
     return new Search(
       (hit) => {
         const place: Position = [hit.lon, hit.lat];
-        if (hit.kind !== "place") this.name(place, hit.title);
+        if (hit.kind !== "place" || hit.settlement) this.name(place, hit.title);
         set(place);
       },
       {
         id: `place-${index}`,
         label: roleOf(index, count),
-        placeholder: "Road, or latitude, longitude",
+        placeholder: "Road, town, or latitude, longitude",
         field: true,
         emptied: () => set(null),
       },

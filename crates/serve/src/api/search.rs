@@ -1,4 +1,4 @@
-//! Finds an edge or way by its id, a place by its coordinates, or a road by what people type of its name or ref.
+//! Finds an edge or way by its id, a place by its coordinates, or a road or named place by what people type of its name or ref.
 //!
 //! A road is found whole; see `search/whole.rs`. With a vehicle, each result has a summary of its certificates.
 
@@ -9,13 +9,15 @@ use super::super::ask::DecodedRequest;
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::super::roads::RoadIndex;
-use super::super::search::{WholeRoad, coordinates};
+use super::super::search::{Finder, Settlement, Subject, WholeRoad, coordinates};
 use super::answered;
 use super::road::{Told, edges_of_way, told};
 use super::summary::Numbers;
 use crate::network::EdgeNo;
+use crate::osm::LonLat;
 use crate::route::Position;
 use crate::rows::{Bounds, RoadName};
+use crate::words::Named as _;
 
 /// The longest search text, characters.
 const LONGEST: usize = 80;
@@ -23,6 +25,8 @@ const DEFAULT_LIMIT: u32 = 12;
 const MOST: u32 = 50;
 /// How far the nearest road of a place is searched, metres.
 const NEAR_M: f64 = 2000.0;
+/// A degree of latitude, metres.
+const DEGREE_M: f64 = 111_200.0;
 
 /// `/api/search?q=`
 pub(in super::super) fn search(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
@@ -47,14 +51,25 @@ pub(in super::super) fn search(region: &RegionState, ask: &DecodedRequest) -> Re
         results.push(of_place(&roads, place));
     }
     let left = limit.saturating_sub(results.len());
-    results.extend(finder.find(asked).iter().take(left).map(|hit| whole(&roads, hit.road)));
+    results.extend(finder.find(asked).iter().take(left).map(|hit| match hit.subject {
+        Subject::Road(road) => whole(&roads, road),
+        Subject::Settlement(settlement) => of_settlement(&roads, settlement),
+    }));
     results.truncate(limit);
     let members = |(mut members, edges): (Value, Vec<EdgeNo>)| {
         let numbers = numbers.as_ref().filter(|_| !edges.is_empty());
         members["summary"] = json!(numbers.map(|numbers| numbers.summary(&roads, edges.into_iter())));
+        members["town"] = json!(town(&finder, &members));
         members
     };
     Ok(answered(&results.into_iter().map(members).collect()))
+}
+
+/// The named place in which a result lies, but for named places themselves.
+fn town(finder: &Finder, members: &Value) -> Option<String> {
+    let e7 = |name: &str| members[name].as_f64().map(|degrees| (degrees * 1e7).round() as i32);
+    let (lon_e7, lat_e7) = e7("lon").zip(e7("lat")).filter(|_| members["settlement"].is_null())?;
+    finder.town(LonLat { lon_e7, lat_e7 }).map(|town| town.name.to_string())
 }
 
 /// A result, and the edges that belong to it.
@@ -107,12 +122,27 @@ fn of_place(roads: &RoadIndex, place: Position) -> Found {
         "ref": null,
         "title": beside.unwrap_or(name),
         "by_ref": null,
+        "settlement": null,
         "highway": edge.map(|edge| network.road(edge)).map(|road| crate::osm::facts::highway(road.class, road.link)),
         "ways": 0,
         "pieces": 0,
     });
     placed(&mut members, here, place);
     (members, Vec::new())
+}
+
+/// A town, village or other named place. Its box is as wide as the place is taken to reach.
+fn of_settlement(roads: &RoadIndex, settlement: &Settlement) -> Found {
+    let (lon, lat) = settlement.at.degrees();
+    let (mut members, edges) = of_place(roads, Position { lon, lat });
+    let half_deg = settlement.reach_m() / 3.0 / DEGREE_M;
+    let (east, north) = (half_deg / lat.to_radians().cos().max(0.01), half_deg);
+    let here = Bounds { west: lon - east, south: lat - north, east: lon + east, north: lat + north };
+    members["name"] = json!(settlement.name);
+    members["title"] = json!(settlement.name);
+    members["settlement"] = json!(settlement.kind.name());
+    placed(&mut members, here, Position { lon, lat });
+    (members, edges)
 }
 
 /// The members of a result. Its point is a vertex of its middle edge.
@@ -130,6 +160,7 @@ fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<Edg
         "ref": text(road.reference),
         "title": network.title(middle),
         "by_ref": null,
+        "settlement": null,
         "highway": crate::osm::facts::highway(road.class, road.link),
         "ways": 1,
         "pieces": edges.len(),

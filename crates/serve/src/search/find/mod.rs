@@ -1,21 +1,26 @@
-//! The index of all roads by their words, and the search in it.
+//! The index of all roads and named places by their words, and the search in it.
 //!
 //! Every word of the region's names stands in one sorted list. For each typed word, every word of the list gets a [`Fit`]. Then all roads
 //! are looked at. What fits worse is tried only if nothing fits better: first whole words, beginnings and middles, then slips, then
-//! words that the road does not have.
+//! words that the road does not have. A road is also found by its name together with that of the place that it lies in.
 
 use rustc_hash::FxHashMap;
 
 use super::abbreviations::Abbreviations;
 use super::fold;
+use super::settlement::{Settlement, Settlements};
 use super::typo::{self, Compared};
 use super::whole::{WholeRoad, refs, whole_roads};
 use crate::network::Network;
+use crate::osm::LonLat;
+use crate::rows::Bounds;
 
 /// More typed words are not looked at.
 const MOST_WORDS: usize = 8;
 /// Where fewer roads fit as typed, those are looked for, too, that fit with a slip.
 const FEW: usize = 4;
+/// The position of words that name the place of a road. By these words alone no road is found.
+const OF_TOWN: u8 = u8::MAX;
 /// Parts of words are looked for from this number of letters on.
 const LEAST_WITHIN: usize = 3;
 
@@ -54,17 +59,34 @@ pub(in super::super) enum MatchRank {
     Without(u8),
 }
 
-/// A road that was found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct FoundRoad<'f> {
-    pub(in super::super) rank: MatchRank,
-    pub(in super::super) road: &'f WholeRoad,
+/// What the index has.
+#[derive(Debug, Clone, PartialEq)]
+pub(in super::super) enum Subject {
+    Road(WholeRoad),
+    Settlement(Settlement),
 }
 
-/// The words of a road. `words` are pairs of a position in the name and a word of the list, which may stand there.
+impl Subject {
+    /// Named places before roads, then by size.
+    fn order(&self) -> (u8, f64) {
+        match self {
+            Self::Settlement(place) => (0, -place.reach_m()),
+            Self::Road(road) => (1, -f64::from(road.length_m)),
+        }
+    }
+}
+
+/// A road or a named place that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in super::super) struct Found<'f> {
+    pub(in super::super) rank: MatchRank,
+    pub(in super::super) subject: &'f Subject,
+}
+
+/// The words of a road or place. `words` are pairs of a position in the name and a word of the list, which may stand there.
 struct Entry {
-    road: WholeRoad,
-    /// The number of words of the name. The words of refs come after it.
+    subject: Subject,
+    /// The number of words of the name. The words of refs and of the road's place come after it.
     named: u8,
     words: Box<[(u8, u32)]>,
     /// The folded ref without spaces, if the road is one by its ref.
@@ -81,28 +103,32 @@ struct Typed {
     slips_tell: bool,
 }
 
-/// The roads of a region, to be searched.
+/// The roads and named places of a region, to be searched.
 pub(in super::super) struct Finder {
     abbreviations: Abbreviations,
-    /// All words of all roads, sorted.
+    /// All words of all roads and places, sorted.
     words: Vec<Box<str>>,
     entries: Vec<Entry>,
+    settlements: Settlements,
 }
 
 impl Finder {
     /// # Errors
     /// The shipped table of short forms cannot be read, which a test rules out.
-    pub(in super::super) fn new(network: &Network) -> Result<Self, toml::de::Error> {
+    pub(in super::super) fn new(network: &Network, settlements: Settlements) -> Result<Self, toml::de::Error> {
         // A road by its name is also found by the refs of its ways.
         let with_refs = |road: WholeRoad| {
             let refs = if road.by_ref { Vec::new() } else { refs_of(network, &road) };
             (road, refs)
         };
-        Self::of(whole_roads(network).into_iter().map(with_refs))
+        Self::of(whole_roads(network).into_iter().map(with_refs), settlements)
     }
 
     /// Of roads with further words.
-    fn of(roads: impl Iterator<Item = (WholeRoad, Vec<String>)>) -> Result<Self, toml::de::Error> {
+    fn of(
+        roads: impl Iterator<Item = (WholeRoad, Vec<String>)>,
+        settlements: Settlements,
+    ) -> Result<Self, toml::de::Error> {
         let abbreviations = Abbreviations::builtin()?;
         let mut numbers: FxHashMap<Box<str>, u32> = FxHashMap::default();
         let mut words: Vec<Box<str>> = Vec::new();
@@ -113,18 +139,26 @@ impl Finder {
             })
         };
         let mut entries = Vec::new();
-        for (road, of_refs) in roads {
-            let name = fold::words(&road.text);
+        let places = settlements.all().iter().map(|place| (Subject::Settlement(place.clone()), Vec::new()));
+        let roads = roads.map(|(road, of_refs)| (Subject::Road(road), of_refs));
+        for (subject, of_refs) in places.chain(roads) {
+            let (text, by_ref, town) = match &subject {
+                Subject::Settlement(place) => (&*place.name, false, None),
+                Subject::Road(road) => (&*road.text, road.by_ref, settlements.around(middle(road))),
+            };
+            let name = fold::words(text);
+            let of_town = town.map_or_else(Vec::new, |place| fold::words(&place.name));
             let named = name.len().min(usize::from(u8::MAX / 2));
             // `Goethe Straße` is also found as `goethestr`.
             let joined = (0..).zip(name.windows(2).take(named).map(<[String]>::concat));
             let of_refs = (named as u8..).zip(of_refs.into_iter().take(usize::from(u8::MAX / 2)));
-            let all = (0..).zip(name.iter().take(named).cloned()).chain(joined).chain(of_refs);
+            let of_town = of_town.into_iter().map(|word| (OF_TOWN, word));
+            let all = (0..).zip(name.iter().take(named).cloned()).chain(joined).chain(of_refs).chain(of_town);
             let words =
                 all.flat_map(|(at, word)| abbreviations.meanings(&word).into_iter().map(move |word| (at, word)));
             let words = words.map(|(at, word)| (at, number(word))).collect();
-            let reference = road.by_ref.then(|| name.concat().into_boxed_str());
-            entries.push(Entry { road, named: named as u8, words, reference });
+            let reference = by_ref.then(|| name.concat().into_boxed_str());
+            entries.push(Entry { subject, named: named as u8, words, reference });
         }
         // Sorted, so that beginnings are found by halving.
         let mut order: Vec<u32> = (0..words.len() as u32).collect();
@@ -139,16 +173,24 @@ impl Finder {
             }
         }
         words.sort_unstable();
-        Ok(Self { abbreviations, words, entries })
+        Ok(Self { abbreviations, words, entries, settlements })
     }
 
     /// All roads, in the order of their names.
     pub(in super::super) fn roads(&self) -> impl Iterator<Item = &WholeRoad> {
-        self.entries.iter().map(|entry| &entry.road)
+        self.entries.iter().filter_map(|entry| match &entry.subject {
+            Subject::Road(road) => Some(road),
+            Subject::Settlement(_) => None,
+        })
     }
 
-    /// The roads that fit a text, the best first: by rank, then by length.
-    pub(in super::super) fn find(&self, text: &str) -> Vec<FoundRoad<'_>> {
+    /// The named place that a position belongs to.
+    pub(in super::super) fn town(&self, at: LonLat) -> Option<&Settlement> {
+        self.settlements.around(at)
+    }
+
+    /// The roads and places that fit a text, the best first: by rank, then places by kind, then roads by length.
+    pub(in super::super) fn find(&self, text: &str) -> Vec<Found<'_>> {
         let mut typed = fold::words(text);
         typed.truncate(MOST_WORDS);
         if typed.is_empty() {
@@ -165,11 +207,14 @@ impl Finder {
             // Words are left out only where nothing else is found.
             let most = if found.is_empty() { typed.len() } else { 1 };
             let more = without.take(most).find(|found| !found.is_empty()).unwrap_or_default();
-            let new: Vec<FoundRoad<'_>> =
-                more.into_iter().filter(|hit| !found.iter().any(|one| one.road == hit.road)).collect();
+            let new: Vec<Found<'_>> =
+                more.into_iter().filter(|hit| !found.iter().any(|one| one.subject == hit.subject)).collect();
             found.extend(new);
         }
-        found.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.road.length_m.total_cmp(&a.road.length_m)));
+        let order = |hit: &Found<'_>| hit.subject.order();
+        found.sort_by(|a, b| {
+            a.rank.cmp(&b.rank).then(order(a).0.cmp(&order(b).0)).then(order(a).1.total_cmp(&order(b).1))
+        });
         found
     }
 
@@ -244,7 +289,7 @@ impl Finder {
     }
 
     /// The roads that have all typed words but `without` of them.
-    fn ranked(&self, typed: &[Typed], asked_ref: &str, without: u8) -> Vec<FoundRoad<'_>> {
+    fn ranked(&self, typed: &[Typed], asked_ref: &str, without: u8) -> Vec<Found<'_>> {
         let rank = |entry: &Entry| match &entry.reference {
             Some(own) if **own == *asked_ref => Some(MatchRank::Exact),
             Some(own) if own.starts_with(asked_ref) && without == 0 => Some(MatchRank::Within),
@@ -252,7 +297,7 @@ impl Finder {
             Some(own) if without == 1 && same_number(own, asked_ref) => Some(MatchRank::Without(1)),
             _ => entry.rank(typed, without),
         };
-        self.entries.iter().filter_map(|entry| Some(FoundRoad { rank: rank(entry)?, road: &entry.road })).collect()
+        self.entries.iter().filter_map(|entry| Some(Found { rank: rank(entry)?, subject: &entry.subject })).collect()
     }
 }
 
@@ -265,10 +310,15 @@ fn same_number(a: &str, b: &str) -> bool {
 impl Entry {
     fn rank(&self, typed: &[Typed], without: u8) -> Option<MatchRank> {
         let (mut worst, mut slips, mut missing) = (Fit::Whole, 0_u8, 0_u8);
-        let (mut in_order, mut known) = (true, false);
+        let (mut in_order, mut known, mut of_its_own) = (true, false, false);
         for (i, Typed { fits, telling, slips_tell }) in (0..).zip(typed) {
-            let best = self.words.iter().map(|&(at, word)| (fits[word as usize], at != i)).min();
-            let (fit, elsewhere) = best.unwrap_or((Fit::Not, true));
+            let best = |of_town: bool| {
+                let words = self.words.iter().filter(|(at, _)| (*at == OF_TOWN) == of_town);
+                words.map(|&(at, word)| (fits[word as usize], at != i)).min().unwrap_or((Fit::Not, true))
+            };
+            let own = best(false);
+            of_its_own |= own.0 != Fit::Not;
+            let (fit, elsewhere) = if own.0 == Fit::Not { best(true) } else { own };
             match fit {
                 Fit::Not => missing += 1,
                 Fit::Slip(number) => slips += number,
@@ -282,7 +332,7 @@ impl Entry {
         }
         let all_named = typed.len() == usize::from(self.named);
         match () {
-            () if missing > without || (missing > 0 && !known) => None,
+            () if !of_its_own || missing > without || (missing > 0 && !known) => None,
             () if missing > 0 => Some(MatchRank::Without(missing)),
             () if slips > 0 => Some(MatchRank::Slips(slips)),
             () if worst == Fit::Within => Some(MatchRank::Within),
@@ -291,6 +341,13 @@ impl Entry {
             () => Some(MatchRank::Words),
         }
     }
+}
+
+/// The middle of the box around a road.
+fn middle(road: &WholeRoad) -> LonLat {
+    let e7 = |a: f64, b: f64| (f64::midpoint(a, b) * 1e7).round() as i32;
+    let Bounds { west, south, east, north } = road.bounds;
+    LonLat { lon_e7: e7(west, east), lat_e7: e7(south, north) }
 }
 
 /// The refs of a road's ways, folded and without spaces.

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::rows::Bounds;
+use crate::osm::BackdropShape;
+use crate::osm::facts::BackdropKind;
+use crate::rows::MapBackdrop;
 
 const NAMES: &[&str] = &[
     "Northwest Cornell Road",
@@ -25,19 +27,31 @@ const NAMES: &[&str] = &[
 ];
 const REFS: &[&str] = &["I 5", "A 5", "A 5a", "US 30", "L 551"];
 
-fn finder() -> Finder {
-    let road = |number: u32, text: &str, by_ref| WholeRoad {
+/// A road at a longitude on the equator.
+fn road(number: u32, text: &str, by_ref: bool, lon: f64) -> WholeRoad {
+    WholeRoad {
         text: text.into(),
         by_ref,
         ways: Box::new([number]),
-        bounds: Bounds { west: 0.0, south: 0.0, east: 0.0, north: 0.0 },
+        bounds: Bounds { west: lon, south: 0.0, east: lon, north: 0.0 },
         pieces: 1,
         length_m: 100.0 - number as f32,
-    };
+    }
+}
+
+fn name_of<'f>(hit: &Found<'f>) -> &'f str {
+    match hit.subject {
+        Subject::Road(road) => &road.text,
+        Subject::Settlement(place) => &place.name,
+    }
+}
+
+fn finder() -> Finder {
+    let road = |number, text, by_ref| road(number, text, by_ref, 0.0);
     let names = (0..).zip(NAMES).map(|(number, text)| (road(number, text, false), Vec::new()));
     let refs = (50..).zip(REFS).map(|(number, text)| (road(number, text, true), Vec::new()));
     let other = (road(99, "Pacific Highway", false), vec!["i5".to_owned(), "ca12".to_owned()]);
-    Finder::of(names.chain(refs).chain([other])).unwrap()
+    Finder::of(names.chain(refs).chain([other]), Settlements::default()).unwrap()
 }
 
 #[test]
@@ -75,7 +89,7 @@ fn roads_are_found_as_people_type_them() {
         ("l551", "L 551", MatchRank::Exact),
     ] {
         let found = finder.find(typed);
-        let first = found.first().map(|hit| (&*hit.road.text, hit.rank));
+        let first = found.first().map(|hit| (name_of(hit), hit.rank));
         assert_eq!(first, Some((text, rank)), "{typed}");
     }
     for nothing in ["no such road", "xyzzy", "street 12 zzz", "12", "", "…"] {
@@ -87,13 +101,48 @@ fn roads_are_found_as_people_type_them() {
 fn the_whole_name_is_before_its_beginning_its_words_and_parts_of_words() {
     let finder = finder();
     let found = finder.find("main street");
-    let texts: Vec<&str> = found.iter().map(|hit| &*hit.road.text).collect();
+    let texts: Vec<&str> = found.iter().map(|hit| name_of(hit)).collect();
     assert_eq!(texts, ["Main Street", "Main Street Extension", "Old Main Street"]);
     let found = finder.find("main");
-    let ranks: Vec<(&str, MatchRank)> = found.iter().map(|hit| (&*hit.road.text, hit.rank)).collect();
+    let ranks: Vec<(&str, MatchRank)> = found.iter().map(|hit| (name_of(hit), hit.rank)).collect();
     assert_eq!(ranks.last(), Some(&("Domain Road", MatchRank::Within)));
     // The ref itself is before the roads that carry it, and these before others of similar refs.
-    let of_ref: Vec<&str> = finder.find("i5").iter().map(|hit| &*hit.road.text).collect();
+    let of_ref: Vec<&str> = finder.find("i5").iter().map(|hit| name_of(hit)).collect();
     assert_eq!(of_ref, ["I 5", "Pacific Highway"]);
     assert_eq!(finder.find("a5").len(), 2);
+}
+
+#[test]
+fn places_are_found_and_their_names_tell_roads_apart() {
+    let place = |number, kind, name: &str, lon_e7| {
+        let shape = BackdropShape::Place(LonLat { lon_e7, lat_e7: 0 });
+        MapBackdrop { number, kind, name: Some(name.to_owned()), shape }
+    };
+    let places = Settlements::of(vec![
+        place(1, BackdropKind::Village, "Unterdorf", 0),
+        place(2, BackdropKind::Town, "Sankt Anton", 1_000_000),
+        place(3, BackdropKind::Hamlet, "Dorf", 2_000_000),
+    ]);
+    let roads = [
+        road(1, "Dorfstraße", false, 0.0),
+        road(2, "Dorfstraße", false, 0.1),
+        road(3, "Dorf", false, 0.5),
+        road(4, "Kirchweg", false, 0.1),
+    ];
+    let finder = Finder::of(roads.into_iter().map(|road| (road, Vec::new())), places).unwrap();
+    let found = |typed: &str| -> Vec<(String, u32)> {
+        let number = |hit: &Found<'_>| match hit.subject {
+            Subject::Road(road) => road.ways[0],
+            Subject::Settlement(_) => 0,
+        };
+        finder.find(typed).iter().map(|hit| (name_of(hit).to_owned(), number(hit))).collect()
+    };
+    let of = |all: &[(&str, u32)]| all.iter().map(|(text, number)| ((*text).to_owned(), *number)).collect::<Vec<_>>();
+    assert_eq!(found("sankt anton"), of(&[("Sankt Anton", 0)]), "its roads are not found by its name alone");
+    assert_eq!(found("St. Anton"), of(&[("Sankt Anton", 0)]));
+    assert_eq!(found("dorfstr sankt anton"), of(&[("Dorfstraße", 2)]));
+    assert_eq!(found("Dorfstrasse Unterdorf")[0], ("Dorfstraße".to_owned(), 1));
+    assert_eq!(found("dorf")[..2], of(&[("Dorf", 0), ("Dorf", 3)]), "a place is before a road of the same name");
+    assert_eq!(found("kirchweg, sankt anton"), of(&[("Kirchweg", 4)]));
+    assert_eq!(finder.town(LonLat { lon_e7: 1_010_000, lat_e7: 0 }).map(|town| &*town.name), Some("Sankt Anton"));
 }
