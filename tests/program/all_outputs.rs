@@ -179,14 +179,16 @@ fn a_route_under_conditions_claims_nothing_in_any_form() {
         check_json("route geojson", &run_json(&place, &format!("{line} {relative} --format geojson")), &truth, true);
         assert_eq!(text_faults(&run(&place, &format!("{line} {relative}"))), [""; 0]);
     }
-    place.netcert(&format!("{line} --out way.json --svg way.svg --sheet sheet.html")).succeeds();
+    place
+        .netcert(&format!("{line} --out way.json --svg way.svg --sheet sheet.html --decision decision.html"))
+        .succeeds();
     place.netcert(&format!("{line} --sheet sheet.csv")).succeeds();
     place.netcert(&format!("{line} --sheet sheet.geojson")).succeeds();
     let read = |name: &str| String::from_utf8(place.read(name)).unwrap();
     for name in ["way.json", "sheet.geojson"] {
         check_json(name, &serde_json::from_str(&read(name)).unwrap(), &truth, true);
     }
-    for name in ["way.svg", "sheet.html", "sheet.csv"] {
+    for name in ["way.svg", "sheet.html", "sheet.csv", "decision.html"] {
         assert_eq!(text_faults(&read(name)), [""; 0], "{name}");
     }
     let checked = place.netcert("verify way.json").succeeds().out();

@@ -12,6 +12,7 @@ mod conditional;
 mod conditions_suffice;
 mod corners;
 mod counted_work;
+mod decision;
 mod diff;
 mod engines;
 mod evidence;

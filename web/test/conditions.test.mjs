@@ -38,6 +38,10 @@ inPage("a route under conditions has a line of its own, pins and a list that sta
   assert.match(shown, /Nothing here says that it is/);
   assert.doesNotMatch(shown, /Certified as a whole|Drive it/);
   assert.equal(conditional.safe, false);
+  // The decision sheet of this answer is one click away.
+  const sheet = await page.locator('.route a[href^="/api/decision.html"]').getAttribute("href");
+  const decision = await (await fetch(new URL(sheet, page.url()))).text();
+  assert.match(decision, /<h2>Only under conditions: not certified<\/h2>/);
   assert.ok(await page.locator(".route-key .line-conditional").isVisible(), "the legend names the line");
 
   // The keyboard: a line flies to its pin.

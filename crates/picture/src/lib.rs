@@ -20,6 +20,7 @@
 //! | `vehicle` | a vehicle with its dimensions |
 //! | `route` | the leeway along a route, and the route's shape |
 //! | `sheet` | a page to print: a route under conditions |
+//! | `decision` | a page to file: yes, no, or yes under conditions for one vehicle on one way |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
 //! | `corners` | the corners that a vehicle takes |
 
@@ -33,6 +34,7 @@ use netcert_roads::{network, turns};
 mod bodies;
 mod chart;
 mod corners;
+mod decision;
 mod explanation;
 mod furniture;
 mod lengths;
@@ -50,6 +52,7 @@ mod view;
 
 pub use chart::{Chart, Scale};
 pub use corners::corners;
+pub use decision::{CaseFields, DecisionBasis, decision};
 pub use explanation::explanation;
 pub use furniture::{LegendEntry, arrow, callout, dimension, legend, scale_bar};
 pub use lengths::Units;

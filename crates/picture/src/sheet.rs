@@ -26,7 +26,7 @@ const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf
 pub const SHEET_STYLE: &str = "body{font:15px/1.4 sans-serif;color:#1a1a1a;background:#fff;max-width:60rem;margin:1rem auto;padding:0 1rem}\
     h1{font-size:1.4rem;margin:0 0 .3rem}svg{width:100%;height:auto}\
     table{border-collapse:collapse;width:100%}th,td{border:1px solid #888;padding:.35rem .5rem;text-align:left;vertical-align:top}\
-    td.fill{min-width:5.5rem;height:2.6rem}th{background:#f2f2f2}tr{break-inside:avoid}.scope{border-left:4px solid #b35900;padding-left:.7rem}\
+    td.fill{min-width:5.5rem;height:2.6rem}td:first-child{white-space:nowrap}.drawing{max-width:36rem}th{background:#f2f2f2}tr{break-inside:avoid}.scope{border-left:4px solid #b35900;padding-left:.7rem}\
     @media print{body{margin:0;max-width:none}a{color:inherit;text-decoration:none}}";
 
 /// Where the page has its style sheet.
@@ -36,6 +36,18 @@ pub enum SheetStyle<'a> {
     Within,
     /// At an address, because a server may forbid styles within pages.
     At(&'a str),
+}
+
+/// The beginning of a page, up to its heading.
+pub(super) fn styled_head(title: &str, style: SheetStyle<'_>) -> String {
+    let style = match style {
+        SheetStyle::Within => format!("<style>{SHEET_STYLE}</style>"),
+        // The empty icon keeps browsers from asking the server for one.
+        SheetStyle::At(address) => {
+            format!("<link rel=\"icon\" href=\"data:,\"><link rel=\"stylesheet\" href=\"{}\">", escaped(address))
+        }
+    };
+    format!("{HEAD}<title>{0}</title>{style}</head><body><h1>{0}</h1>", escaped(title))
 }
 
 /// The sheet of a route under conditions, as a whole HTML document.
@@ -51,14 +63,7 @@ pub fn sheet(
     let count = conditional.conditions.len();
     let length = units.route(route.length_m);
     let title = format!("{}: a route of {length} if {count} conditions hold", vehicle.id);
-    let style = match style {
-        SheetStyle::Within => format!("<style>{SHEET_STYLE}</style>"),
-        // The empty icon keeps browsers from asking the server for one.
-        SheetStyle::At(address) => {
-            format!("<link rel=\"icon\" href=\"data:,\"><link rel=\"stylesheet\" href=\"{}\">", escaped(address))
-        }
-    };
-    let mut page = format!("{HEAD}<title>{0}</title>{style}</head><body><h1>{0}</h1>", escaped(&title));
+    let mut page = styled_head(&title, style);
     let rsc = route.certificate.result.rsc_m.map_or("unknown".to_owned(), |rsc_m| units.at_most(rsc_m));
     let _ = write!(
         page,
@@ -141,7 +146,7 @@ fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Con
 }
 
 /// What has to be so. In feet, metres stand beside them, because the CSV and the database have metres.
-fn wanted(condition: &Condition, units: Units) -> String {
+pub(super) fn wanted(condition: &Condition, units: Units) -> String {
     if units == Units::Metres {
         return condition.words();
     }
@@ -214,7 +219,7 @@ fn survey_map(network: &Network, lines: &[SurveyLine<'_>]) -> String {
 }
 
 /// Numbered pins. Those of one place stand side by side.
-fn pin_down(picture: &mut Picture, view: &View, pins: &[(usize, Point)]) {
+pub(super) fn pin_down(picture: &mut Picture, view: &View, pins: &[(usize, Point)]) {
     for (i, (number, pin)) in pins.iter().enumerate() {
         let before = pins[..i].iter().filter(|(_, other)| other == pin).count();
         let [x, y] = view.at(*pin);

@@ -42,6 +42,14 @@ pub enum PartKind {
     },
 }
 
+impl PartKind {
+    /// Whether it is a turn or a passage.
+    #[must_use]
+    pub fn is_turn(self) -> bool {
+        matches!(self, Self::Turn { .. })
+    }
+}
+
 /// A stretch of a route.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoutePart {

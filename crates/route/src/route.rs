@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::assemble::{PartKind, RoutePart, RoutePath};
 use super::drive::Drive;
 use super::strip_use::StripUse;
+use super::title::title;
 use crate::network::{Edge, Network, destination_tag};
 use crate::osm::facts::{At, Policy};
 use crate::stet::{Certificate, known_m};
@@ -88,6 +89,23 @@ impl Route {
             }
         };
         self.path.parts.iter().map(part).collect()
+    }
+
+    /// The parts in driving order with their titles. Consecutive edges of one road are one part.
+    #[must_use]
+    pub fn titled_parts(&self, network: &Network) -> Vec<(PartResult, String)> {
+        let mut rows: Vec<(PartResult, String)> = Vec::new();
+        for part in self.parts() {
+            let title = title(network, part.kind);
+            match rows.last_mut() {
+                Some((last, known)) if !last.kind.is_turn() && !part.kind.is_turn() && *known == title => {
+                    last.to_m = part.to_m;
+                    last.rsc_m = last.rsc_m.into_iter().chain(part.rsc_m).reduce(f64::min);
+                }
+                _ => rows.push((part, title)),
+            }
+        }
+        rows
     }
 
     /// The stations at which the certificate notes leeways of a part. In areas it notes the least leeway of a vehicle's place at one

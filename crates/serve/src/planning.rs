@@ -12,8 +12,8 @@ use super::problem::Problem;
 use super::region::{CertifiedVehicle, RegionState};
 use crate::picture::{self, SheetStyle, Units};
 use crate::route::{
-    self, Conditional, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError, Speeds,
-    Unanswered,
+    self, Answer, Conditional, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError,
+    Speeds, Unanswered,
 };
 use crate::stop::Stop;
 use crate::words::{Named as _, verdict_words};
@@ -43,10 +43,11 @@ pub(super) struct RouteQuestion {
     pub(super) stop: Stop,
 }
 
-/// An answer, and the sheets of its route under conditions, if it has one.
+/// An answer as JSON and as it was found, and the sheets of its route under conditions, if it has one.
 #[derive(Debug)]
 pub(super) struct PlannedAnswer {
     pub(super) members: Value,
+    pub(super) found: Answer,
     pub(super) sheets: Option<Sheets>,
 }
 
@@ -193,7 +194,7 @@ impl PlannerThread {
         members["at_most"] = json!(self.ladder.as_ref().map(|ladder| ladder.widest.permits.settings.policy.name()));
         ids_as_text(&mut members);
         let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
-        Ok(PlannedAnswer { members, sheets })
+        Ok(PlannedAnswer { members, found: answer, sheets })
     }
 
     /// Which place is too far from a road that may be used, the nearest such road, and why the road beside the place is none.

@@ -41,6 +41,7 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
         api::explain::drawn(&served.region, &served.explanations, ask)
     }),
     ("/api/route", Pace::Slow, |served, ask| api::route::route(&served.region, &served.planners, ask)),
+    ("/api/decision.html", Pace::Slow, |served, ask| api::route::decision_html(&served.region, &served.planners, ask)),
     ("/api/sheet.css", Pace::Quick, |_, ask| api::route::sheet_css(ask)),
     ("/api/sheet.csv", Pace::Slow, |served, ask| api::route::sheet_csv(&served.region, &served.planners, ask)),
     ("/api/sheet.geojson", Pace::Slow, |served, ask| api::route::sheet_geojson(&served.region, &served.planners, ask)),

@@ -37,6 +37,15 @@ pub(crate) enum PageUnits {
     Feet,
 }
 
+impl From<PageUnits> for Units {
+    fn from(units: PageUnits) -> Self {
+        match units {
+            PageUnits::Metres => Self::Metres,
+            PageUnits::Feet => Self::Feet,
+        }
+    }
+}
+
 /// The sheet in the form that the file's name asks for.
 pub(crate) fn text(
     path: &Path,
@@ -45,10 +54,7 @@ pub(crate) fn text(
     vehicle: &Vehicle,
     conditional: &Conditional,
 ) -> anyhow::Result<String> {
-    let units = match units {
-        PageUnits::Metres => Units::Metres,
-        PageUnits::Feet => Units::Feet,
-    };
+    let units = Units::from(units);
     Ok(match Kind::of(path)? {
         Kind::Table | Kind::Geojson if units == Units::Feet => {
             bail!("{}: a table for `netcert evidence add` is in metres; a page (.html) may be in feet", path.display())

@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use netcert::certificate;
 use netcert::corridor::FileCorridor;
 use netcert::osm::facts::Policy;
-use netcert::picture;
+use netcert::picture::{self, CaseFields, DecisionBasis, SheetStyle};
 use netcert::region::Region;
 use netcert::route::{self, Answer, Measure, Peer, Planner, Position, Question, RungPrices};
 use netcert::stop::Stop;
@@ -42,6 +42,7 @@ Examples:
   netcert verify certificate.json
   netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --at-most carriageway
   netcert route --vehicle US-WB67 --from 8.67,49.40 --to 8.70,49.42 --sheet conditions.html
+  netcert route --vehicle US-WB67 --from 8.67,49.40 --to 8.70,49.42 --decision decision.html --case 2026-117
   netcert route --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --from 144.29,-36.74 --to 144.33,-36.80
 
 The vehicle is straight where the route begins. The search never turns back on the road and ignores
@@ -92,6 +93,15 @@ pub(crate) struct Route {
     /// The units of a sheet that is a page. A needed width is rounded up, and an assumed one down. Tables are in metres.
     #[arg(long, value_enum, default_value_t = sheet::PageUnits::Metres, requires = "sheet")]
     sheet_units: sheet::PageUnits,
+    /// Write a decision sheet: a page to file with a case. It says yes, no, or yes under conditions, what that rests on, and has room to
+    /// sign.
+    #[arg(long, value_name = "OUT.html")]
+    decision: Option<PathBuf>,
+    #[command(flatten)]
+    case: CaseArgs,
+    /// The units of the decision sheet.
+    #[arg(long, value_enum, default_value_t = sheet::PageUnits::Metres, requires = "decision")]
+    decision_units: sheet::PageUnits,
     /// Draw the best route into this file: its shape and the leeway along it.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
@@ -99,6 +109,20 @@ pub(crate) struct Route {
     /// conditions names them.
     #[arg(long, value_name = "CERTIFICATE.json")]
     out: Option<PathBuf>,
+}
+
+/// What an office writes on a decision sheet.
+#[derive(Args)]
+struct CaseArgs {
+    /// The number of the case, on the decision sheet.
+    #[arg(long = "case", value_name = "TEXT", requires = "decision")]
+    number: Option<String>,
+    /// Who applies, on the decision sheet.
+    #[arg(long, value_name = "TEXT", requires = "decision")]
+    applicant: Option<String>,
+    /// The applicant's own reference, on the decision sheet.
+    #[arg(long, value_name = "TEXT", requires = "decision")]
+    reference: Option<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -234,6 +258,10 @@ impl Route {
             write(path, picture::route(network, &inputs.driver.model.vehicle, best, conditions))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
+        if let Some(path) = &self.decision {
+            write(path, self.decision(inputs, answer))?;
+            session.progress.say(&format!("{}: the decision sheet", path.display()));
+        }
         if let Some(path) = &self.sheet {
             let Some(conditional) = conditional else {
                 bail!("{}: there are no conditions to write; run without --sheet", path.display());
@@ -243,6 +271,26 @@ impl Route {
             session.progress.say(&format!("{}: {} conditions to check", path.display(), conditional.conditions.len()));
         }
         Ok(())
+    }
+}
+
+impl Route {
+    fn decision(&self, inputs: &RoutingInputs, answer: &Answer) -> String {
+        let CaseArgs { number, applicant, reference } = &self.case;
+        let fields = CaseFields { case: number.clone(), applicant: applicant.clone(), reference: reference.clone() };
+        let (origin, own) = (&inputs.origin, inputs.settings().policy);
+        let basis = DecisionBasis {
+            input_name: origin.input_name.clone(),
+            map_time: origin.replication_timestamp.clone(),
+            input_blake3: origin.input_blake3.clone(),
+            read_by: origin.netcert_version.clone(),
+            measurements: origin.measurements,
+            at: origin.at.clone(),
+            strips: [own, self.at_most.unwrap_or(own)],
+        };
+        let vehicle = &inputs.driver.model.vehicle;
+        let units = self.decision_units.into();
+        picture::decision(&inputs.roads.network, vehicle, answer, &fields, &basis, units, SheetStyle::Within)
     }
 }
 

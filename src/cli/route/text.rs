@@ -5,7 +5,7 @@ use std::io::Write;
 
 use netcert::network::{Network, PassageKind, destination_words};
 use netcert::osm::facts::Policy;
-use netcert::route::{self, Answer, Comparison, Conditional, LimitedStretch, PartKind, PartResult, Route, UsePlace};
+use netcert::route::{self, Answer, Comparison, Conditional, LimitedStretch, PartKind, Route, UsePlace};
 use netcert::words::Named;
 
 use crate::cli::database::routing::RoutingInputs;
@@ -153,20 +153,7 @@ fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Route) -> std::i
 /// Prints the parts of the route. Consecutive edges of the same road share one row.
 fn parts(out: &mut dyn Write, network: &Network, found: &Route) -> std::io::Result<()> {
     let mut table = Table::new(&[">from", ">length", ">rsc", "", "road"]);
-    let mut rows: Vec<(PartResult, String)> = Vec::new();
-    for part in found.parts() {
-        let title = route::title(network, part.kind);
-        match rows.last_mut() {
-            Some((last, known))
-                if matches!((last.kind, part.kind), (PartKind::Edge(_), PartKind::Edge(_))) && *known == title =>
-            {
-                last.to_m = part.to_m;
-                last.rsc_m = least(last.rsc_m, part.rsc_m);
-            }
-            _ => rows.push((part, title)),
-        }
-    }
-    for (part, title) in rows {
+    for (part, title) in found.titled_parts(network) {
         let rsc = part.rsc_m.map_or(String::new(), |rsc_m| format!("{rsc_m:.2} m"));
         table.row([
             format!("{:.2} km", part.from_m / 1000.0),
@@ -211,11 +198,6 @@ fn uses(out: &mut dyn Write, network: &Network, found: &Route) -> std::io::Resul
         writeln!(out, "\n{}", wrapped(&told, "  "))?;
     }
     writeln!(out)
-}
-
-/// The lesser of two numbers. If only one is known, that one.
-fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
-    a.zip(b).map(|(a, b)| a.min(b)).or(a).or(b)
 }
 
 /// A word for the movement on a part: along an edge, round a roundabout, across a complex, or a turn.

@@ -143,7 +143,7 @@ fn measured() -> WorkFolder {
 fn asked_under_conditions(wide: &Server) -> Vec<(String, String)> {
     let question = format!("vehicle={LONG}&from=126.026942,-30.203315&to=126.046615,-30.205563");
     let mut asked = vec![("/api/sheet.css".to_owned(), "/api/sheet.css".to_owned())];
-    for path in ["/api/route", "/api/sheet.csv", "/api/sheet.geojson", "/api/sheet.html"] {
+    for path in ["/api/route", "/api/decision.html", "/api/sheet.csv", "/api/sheet.geojson", "/api/sheet.html"] {
         asked.push((path.to_owned(), format!("{path}?{question}")));
     }
     let answer = wide.json(&format!("/api/route?{question}"));

@@ -126,6 +126,8 @@ export const api = {
   /** Routes that differ from the best one, after it. Each has its drive. */
   otherRoutes: (places: readonly Position[], question: RouteQuestion, signal?: AbortSignal) =>
     get<RouteAnswer>("/api/route", { ...ride(places, question), conditions: "none", alternatives: String(MOST_OTHERS), drive: "all" }, signal),
+  decisionUrl: (places: readonly Position[], question: RouteQuestion) =>
+    `/api/decision.html?${written({ ...ride(places, question), ...(spoken() === "feet" ? { units: "feet" } : {}) })}`,
   sheetUrl: (form: "html" | "csv" | "geojson", places: readonly Position[], question: RouteQuestion) =>
     `/api/sheet.${form}?${written({ ...ride(places, question), ...(form === "html" && spoken() === "feet" ? { units: "feet" } : {}) })}`,
   /** What changed since the older database, of the box `west,south,east,north` or everywhere. */

@@ -214,7 +214,8 @@ export class Routing {
     this.drive.offer(best ?? null);
     this.#items = best ? [] : conditional ? conditionItems(conditional) : obstacleItems(answer.obstacles ?? []);
     const sheet = (form: "html" | "csv" | "geojson") => api.sheetUrl(form, places, own);
-    this.#panel.show(answer, this.#items, { palette: palettes[theme], command: this.#command(places), sheet, search, chosen, others, about: this.#about(answer) });
+    const decision = api.decisionUrl(places, own);
+    this.#panel.show(answer, this.#items, { palette: palettes[theme], command: this.#command(places), sheet, decision, search, chosen, others, about: this.#about(answer) });
     const line = (best?.geometry ?? conditional?.geometry ?? way)?.coordinates ?? [];
     const beside = routes.filter((one) => one !== best).map(({ geometry }) => geometry.coordinates);
     const oncoming = (best?.uses ?? []).filter(({ strip }) => strip === "carriageway");

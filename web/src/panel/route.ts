@@ -35,6 +35,8 @@ export interface Around {
   command: string;
   /** The address of a sheet of the conditions. */
   sheet(form: "html" | "csv" | "geojson"): string;
+  /** The address of the decision sheet. */
+  decision: string;
   search: Search;
   /** Which of the certified ways is shown, and what is known of others. */
   chosen: number;
@@ -89,7 +91,10 @@ export class RoutePanel {
         : this.#blocked(answer, around.search);
     const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, around.command));
     const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
-    this.#put(heading, ...content, ...away(answer), same, h("div", { class: "tools" }, clear));
+    // While conditions are looked for, nothing is decided.
+    const decided = around.search !== "searching";
+    const decision = h("a", { class: "button small", href: around.decision, target: "_blank", rel: "noopener" }, icon("sheet"), "Decision sheet");
+    this.#put(heading, ...content, ...away(answer), same, h("div", { class: "tools" }, clear, decided ? decision : null));
   }
 
   /** Shows which line belongs to the chosen pin. */

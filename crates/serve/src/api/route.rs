@@ -1,4 +1,5 @@
-//! Answers with a certified route between places, else with a route under conditions and the obstacles, and with the sheets of conditions.
+//! Answers with a certified route between places, else with a route under conditions and the obstacles, with the sheets of conditions, and with the
+//! decision sheet.
 
 use std::sync::Arc;
 
@@ -6,13 +7,14 @@ use serde_json::json;
 
 use super::super::answer::StoredAnswer;
 use super::super::ask::{DecodedRequest, one_of, policy};
-use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router, Sheets};
+use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router, SHEET_STYLE_AT, Sheets};
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::{GEOJSON, SCOPE, answered};
 use crate::osm::facts::Policy;
-use crate::picture;
+use crate::picture::{self, CaseFields, DecisionBasis, SheetStyle, Units};
 use crate::route::{Measure, Question};
+use crate::store::Database;
 use crate::words::Named;
 
 /// The greatest number of places between beginning and end.
@@ -45,6 +47,36 @@ pub(in super::super) fn route(
     ask: &DecodedRequest,
 ) -> Result<StoredAnswer, Problem> {
     Ok(answered(&planned(region, planners, ask, &[])?.members))
+}
+
+/// `/api/decision.html`
+pub(in super::super) fn decision_html(
+    region: &RegionState,
+    planners: &Planners,
+    ask: &DecodedRequest,
+) -> Result<StoredAnswer, Problem> {
+    let units = match ask.parameter("units").unwrap_or("metres") {
+        "metres" => Units::Metres,
+        "feet" => Units::Feet,
+        _ => return Err(Problem::parameter("units", "give metres or feet")),
+    };
+    let planned = planned(region, planners, ask, &["units"])?;
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    let vehicle = region.certified(ask.required("vehicle")?, policy)?.vehicle;
+    let widest = strips(region, ask, &vehicle.id, policy)?.into_iter().max().unwrap_or(policy);
+    let read = region.runs.iter().find(|run| run.read_extract()).or(region.runs.first());
+    let basis = DecisionBasis {
+        input_name: read.map_or_else(String::new, |run| run.input_name.clone()),
+        map_time: read.and_then(|run| run.replication_timestamp.clone()),
+        input_blake3: read.and_then(|run| run.input_blake3.clone()),
+        read_by: read.map_or_else(String::new, |run| run.netcert_version.clone()),
+        measurements: region.read(Database::register)?.entries.len(),
+        at: None,
+        strips: [policy, widest],
+    };
+    let (roads, fields, style) = (region.roads()?, CaseFields::default(), SheetStyle::At(SHEET_STYLE_AT));
+    let page = picture::decision(roads.network(), vehicle, &planned.found, &fields, &basis, units, style);
+    Ok(StoredAnswer::new("text/html; charset=utf-8", page.into_bytes()))
 }
 
 /// `/api/sheet.html`
