@@ -5,7 +5,6 @@
 
 use rustc_hash::FxHashMap;
 
-use super::conditions::{Condition, ConditionAt};
 use super::drive::Drive;
 use crate::network::{EdgeNo, Network};
 use crate::osm::NodeId;
@@ -14,18 +13,18 @@ use crate::rows::{Attestation, AttestedBy};
 /// The edges and turns on which one vehicle is attested, and by whom.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Attested {
-    edges: FxHashMap<EdgeNo, AttestedBy>,
+    edges: FxHashMap<EdgeNo, Vec<AttestedBy>>,
     turns: FxHashMap<[EdgeNo; 2], AttestedBy>,
 }
 
 impl Attested {
-    /// What a database says of a vehicle. Of several that attest one place, the first counts.
+    /// What a database says of a vehicle. Of several that attest one turn, the first counts.
     #[must_use]
     pub fn new(all: &[Attestation]) -> Self {
         let mut attested = Self::default();
         for Attestation { by, edges, turns } in all {
             for &edge in edges {
-                attested.edges.entry(EdgeNo::new(edge)).or_insert(*by);
+                attested.edges.entry(EdgeNo::new(edge)).or_default().push(*by);
             }
             for ends in turns {
                 attested.turns.entry(ends.map(EdgeNo::new)).or_insert(*by);
@@ -43,7 +42,7 @@ impl Attested {
     /// Who attests an edge.
     #[must_use]
     pub fn edge(&self, edge: EdgeNo) -> Option<AttestedBy> {
-        self.edges.get(&edge).copied()
+        self.edges.get(&edge)?.first().copied()
     }
 
     /// Who attests the turn or passage from one edge into another.
@@ -52,34 +51,19 @@ impl Attested {
         self.turns.get(&[from, to]).copied()
     }
 
-    /// Who attests all of these edges: of several, who attests the first.
-    fn road(&self, edges: &[EdgeNo]) -> Option<AttestedBy> {
-        let all: Option<Vec<AttestedBy>> = edges.iter().map(|&edge| self.edge(edge)).collect();
-        all?.first().copied()
+    /// Who attests all of these edges.
+    pub(super) fn road(&self, edges: &[EdgeNo]) -> Option<AttestedBy> {
+        let of = |edge: &EdgeNo| self.edges.get(edge).map_or(&[][..], Vec::as_slice);
+        let (first, others) = edges.split_first()?;
+        of(first).iter().copied().find(|by| others.iter().all(|edge| of(edge).contains(by)))
     }
 
     /// Who attests what a way drives at a node: the turn or passage there, or the road if the way goes straight on.
-    fn node(&self, network: &Network, strokes: &[u32], drive: &Drive, node: NodeId) -> Option<AttestedBy> {
+    pub(super) fn node(&self, network: &Network, strokes: &[u32], drive: &Drive, node: NodeId) -> Option<AttestedBy> {
         let ends = |edge: EdgeNo| network.edges.get(edge.index()).is_some_and(|edge| edge.to_node == node);
         let join = drive.joins().find(|join| ends(join.from) || join.arcs.iter().any(|&arc| ends(arc)))?;
         let stroke = |edge: EdgeNo| strokes.get(edge.index()).filter(|&&stroke| stroke != u32::MAX);
         let straight_on = join.arcs.is_empty() && stroke(join.from).is_some() && stroke(join.from) == stroke(join.to);
         if straight_on { self.road(&[join.from, join.to]) } else { self.turn(join.from, join.to) }
-    }
-
-    /// Tells each condition of a way who attests the place of it.
-    pub(super) fn tell(&self, network: &Network, drive: &Drive, conditions: &mut [Condition]) {
-        if self.is_empty() {
-            return;
-        }
-        let strokes = network.strokes_of_edges();
-        for condition in conditions {
-            condition.attested_by = match &condition.at {
-                ConditionAt::Road(edges) => self.road(edges),
-                ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => {
-                    self.node(network, &strokes, drive, *node)
-                }
-            };
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
 
 use super::assemble::{DrivenWay, PartKind};
-use super::conditions::{Conditional, ConditionalAccess, Fitted, Fitter, RoadPrice, Unfit};
+use super::conditions::{Conditional, ConditionalAccess, Fitted, Fitter, RoadPrice, Unfit, tell_who_attests};
 use super::graph::BARRED;
 use super::obstacles::Refutation;
 use super::plan::{Planner, Question, Unanswered};
@@ -99,7 +99,7 @@ impl Planner {
                     }
                     let kerbs = &self.driver.permits.settings.kerbs;
                     let mut conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
-                    self.driver.attested.tell(self.network(), &found.drive, &mut conditions);
+                    tell_who_attests(&self.driver.attested, self.network(), &found.drive, &mut conditions);
                     let route = self.route(&found, start, end, certified);
                     return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                 }

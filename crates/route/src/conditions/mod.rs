@@ -34,6 +34,8 @@ pub(super) use prices::{edge_price, turn_price};
 pub(super) use suppositions::Suppositions;
 pub(super) use turn_need::Turning;
 
+use super::attested::Attested;
+use super::drive::Drive;
 use super::route::Route;
 use super::snap::Snapped;
 use crate::evidence::Quantity;
@@ -100,6 +102,22 @@ impl Condition {
                 .sum(),
             ConditionAt::Corner { .. } | ConditionAt::Junction(_) => 0.0,
         }
+    }
+}
+
+/// Tells each condition of a way who attests the place of it.
+pub(super) fn tell_who_attests(attested: &Attested, network: &Network, drive: &Drive, conditions: &mut [Condition]) {
+    if attested.is_empty() {
+        return;
+    }
+    let strokes = network.strokes_of_edges();
+    for condition in conditions {
+        condition.attested_by = match &condition.at {
+            ConditionAt::Road(edges) => attested.road(edges),
+            ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => {
+                attested.node(network, &strokes, drive, *node)
+            }
+        };
     }
 }
 

@@ -125,7 +125,7 @@ fn prefer_measured(network: &Network, movements: &Movements, access: &mut Access
     make_cheaper(movements, access, MEASURED_SHARE, near, |from, to| near(from) || near(to));
 }
 
-/// Makes cheap what lacks room where the vehicle is attested to go: there an authority has looked.
+/// Makes cheap what lacks room where the vehicle is attested to go: there somebody with the right to say so has opened the road to it.
 fn prefer_attested(attested: &Attested, movements: &Movements, access: &mut Access) {
     if !attested.is_empty() {
         let (edge, turn) = (|edge| attested.edge(edge).is_some(), |from, to| attested.turn(from, to).is_some());

@@ -67,10 +67,16 @@ impl Database {
         if signed.is_empty() {
             return Ok(signed);
         }
+        // Other edges, of which there may be many more, are left out before their shapes are read.
+        let values: BTreeSet<&str> = signed.iter().map(|one| one.designation.first_value()).collect();
+        let some = vec!["instr(e.legal_tags, '=' || ?) > 0"; values.len()].join(" OR ");
+        let sql = format!(
+            "SELECT e.fid - 1, r.country, e.legal_tags, e.geom FROM edge AS e JOIN road AS r ON r.road_no = e.road_no \
+             WHERE e.legal_tags IS NOT NULL AND ({some}) ORDER BY e.fid"
+        );
         let rows = self.session.run(async |c| {
-            let sql = "SELECT e.fid - 1, r.country, e.legal_tags, e.geom FROM edge AS e JOIN road AS r ON r.road_no = e.road_no \
-                       WHERE e.legal_tags IS NOT NULL ORDER BY e.fid";
-            sqlx::query_as::<_, (u32, String, String, Vec<u8>)>(sql).fetch_all(c).await
+            let query = sqlx::query_as::<_, (u32, String, String, Vec<u8>)>(sqlx::AssertSqlSafe(sql));
+            values.into_iter().fold(query, |query, value| query.bind(value)).fetch_all(c).await
         })?;
         let path = self.session.path.clone();
         let countries = Countries::load()

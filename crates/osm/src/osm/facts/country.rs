@@ -179,6 +179,7 @@ mod tests {
     fn places_have_a_state() {
         let countries = Countries::load().unwrap();
         assert_eq!(countries.regions(at(-83.0, 39.96)), ["US-OH", "US"]);
+        assert_eq!(countries.regions(at(151.2, -33.87)), ["AU-NSW", "AU"]);
         assert_eq!(countries.regions(at(-30.0, 40.0)), Vec::<&str>::new());
     }
 

@@ -113,6 +113,12 @@ impl Designation {
         self.tags.iter().all(|tag| tag_lines::tags(tags).any(|(key, value)| is_tag(tag, key, value)))
     }
 
+    /// The value of its first tag. No direction of a road has the designation without it.
+    #[must_use]
+    pub fn first_value(&self) -> &str {
+        self.tags.first().and_then(|tag| tag.split_once('=')).map_or("", |(_, value)| value)
+    }
+
     /// Its tags, as people write them.
     #[must_use]
     pub fn tags(&self) -> String {
@@ -170,9 +176,9 @@ mod tests {
         for (tags, forward, backward) in [
             ("", &[][..], &[][..]),
             ("hgv=yes", &[], &[]),
-            ("hgv=designated", &["eu-goods-route"], &["eu-goods-route"]),
-            ("hgv:forward=designated", &["eu-goods-route"], &[]),
-            ("hgv:backward=designated | hgv=no", &[], &["eu-goods-route"]),
+            ("hgv=designated", &[], &[]),
+            ("hgv:national_network:forward=yes", &of_us, &[]),
+            ("bdouble:backward=designated | hgv=no", &[], &["au-b-double"]),
             ("hgv:national_network=yes | maxheight=4.2", &of_us, &of_us),
             ("b_double=designated", &["au-b-double"], &["au-b-double"]),
             ("roadtrain=designated | roadtrain:trailers=3", &of_au, &of_au),
@@ -196,7 +202,8 @@ mod tests {
         assert_eq!(of("US", &["US-CA", "US"]), ["us-national-network"]);
         assert_eq!(of("US", &[]), ["us-national-network"], "a state that nobody knows");
         assert_eq!(of("CA", &["US-OH"]), Vec::<&str>::new(), "a country that the user names");
-        assert_eq!(of("DE", &["DE"]), ["de-long-vehicles", "eu-goods-route"]);
+        assert_eq!(of("AU", &["AU-TAS", "AU"]), ["au-b-double"]);
+        assert_eq!(of("AU", &["AU-WA", "AU"]), Vec::<&str>::new());
     }
 
     #[test]
