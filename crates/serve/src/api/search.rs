@@ -52,14 +52,16 @@ pub(in super::super) fn search(region: &RegionState, ask: &DecodedRequest) -> Re
     }
     let left = limit.saturating_sub(results.len());
     results.extend(finder.find(asked).iter().take(left).map(|hit| match hit.subject {
-        Subject::Road(road) => whole(&roads, road),
+        Subject::Road { road, town } => whole(&roads, road, town.as_deref()),
         Subject::Settlement(settlement) => of_settlement(&roads, settlement),
     }));
     results.truncate(limit);
     let members = |(mut members, edges): (Value, Vec<EdgeNo>)| {
         let numbers = numbers.as_ref().filter(|_| !edges.is_empty());
         members["summary"] = json!(numbers.map(|numbers| numbers.summary(&roads, edges.into_iter())));
-        members["town"] = json!(town(&finder, &members));
+        if members.get("town").is_none() {
+            members["town"] = json!(town(&finder, &members));
+        }
         members
     };
     Ok(answered(&results.into_iter().map(members).collect()))
@@ -90,7 +92,7 @@ fn way(roads: &RoadIndex, id: i64) -> Option<Found> {
     found(roads, "way", &id.to_string(), bounds, edges)
 }
 
-fn whole(roads: &RoadIndex, road: &WholeRoad) -> Found {
+fn whole(roads: &RoadIndex, road: &WholeRoad, town: Option<&str>) -> Found {
     let network = roads.network();
     let edges: Vec<EdgeNo> = road.edges(network).collect();
     let id = road.ways.first().and_then(|&way| network.roads.get(way as usize)).map_or(0, |way| way.way_id);
@@ -103,6 +105,7 @@ fn whole(roads: &RoadIndex, road: &WholeRoad) -> Found {
     members["title"] = json!(title);
     members["by_ref"] = json!(road.by_ref.then_some(&road.text));
     members["ways"] = json!(road.ways.len());
+    members["town"] = json!(town);
     (members, edges)
 }
 

@@ -4,21 +4,24 @@
 //! are looked at. What fits worse is tried only if nothing fits better: first whole words, beginnings and middles, then slips, then
 //! words that the road does not have. A road is also found by its name together with that of the place that it lies in.
 
+use std::collections::BTreeSet;
+
 use rustc_hash::FxHashMap;
 
 use super::abbreviations::Abbreviations;
 use super::fold;
 use super::settlement::{Settlement, Settlements};
 use super::typo::{self, Compared};
-use super::whole::{WholeRoad, refs, whole_roads};
+use super::whole::{WholeRoad, edges_of, refs, whole_roads};
 use crate::network::Network;
 use crate::osm::LonLat;
-use crate::rows::Bounds;
 
 /// More typed words are not looked at.
 const MOST_WORDS: usize = 8;
 /// Where fewer roads fit as typed, those are looked for, too, that fit with a slip.
 const FEW: usize = 4;
+/// Of a road with more ways not every way says in which place it lies.
+const MOST_PLACES: usize = 16;
 /// The position of words that name the place of a road. By these words alone no road is found.
 const OF_TOWN: u8 = u8::MAX;
 /// Parts of words are looked for from this number of letters on.
@@ -62,7 +65,11 @@ pub(in super::super) enum MatchRank {
 /// What the index has.
 #[derive(Debug, Clone, PartialEq)]
 pub(in super::super) enum Subject {
-    Road(WholeRoad),
+    Road {
+        road: WholeRoad,
+        /// The named place in which it lies, if it is one.
+        town: Option<Box<str>>,
+    },
     Settlement(Settlement),
 }
 
@@ -71,7 +78,7 @@ impl Subject {
     fn order(&self) -> (u8, f64) {
         match self {
             Self::Settlement(place) => (0, -place.reach_m()),
-            Self::Road(road) => (1, -f64::from(road.length_m)),
+            Self::Road { road, .. } => (1, -f64::from(road.length_m)),
         }
     }
 }
@@ -91,6 +98,15 @@ struct Entry {
     words: Box<[(u8, u32)]>,
     /// The folded ref without spaces, if the road is one by its ref.
     reference: Option<Box<str>>,
+}
+
+/// A road with what else it is found by.
+struct IndexedRoad {
+    road: WholeRoad,
+    /// The refs of its ways, folded, if it is one by its name.
+    refs: Vec<String>,
+    /// Where it lies.
+    places: Vec<LonLat>,
 }
 
 /// A typed word.
@@ -116,19 +132,15 @@ impl Finder {
     /// # Errors
     /// The shipped table of short forms cannot be read, which a test rules out.
     pub(in super::super) fn new(network: &Network, settlements: Settlements) -> Result<Self, toml::de::Error> {
-        // A road by its name is also found by the refs of its ways.
-        let with_refs = |road: WholeRoad| {
+        let indexed = |road: WholeRoad| {
             let refs = if road.by_ref { Vec::new() } else { refs_of(network, &road) };
-            (road, refs)
+            let places = places_of(network, &road);
+            IndexedRoad { road, refs, places }
         };
-        Self::of(whole_roads(network).into_iter().map(with_refs), settlements)
+        Self::of(whole_roads(network).into_iter().map(indexed), settlements)
     }
 
-    /// Of roads with further words.
-    fn of(
-        roads: impl Iterator<Item = (WholeRoad, Vec<String>)>,
-        settlements: Settlements,
-    ) -> Result<Self, toml::de::Error> {
+    fn of(roads: impl Iterator<Item = IndexedRoad>, settlements: Settlements) -> Result<Self, toml::de::Error> {
         let abbreviations = Abbreviations::builtin()?;
         let mut numbers: FxHashMap<Box<str>, u32> = FxHashMap::default();
         let mut words: Vec<Box<str>> = Vec::new();
@@ -139,15 +151,21 @@ impl Finder {
             })
         };
         let mut entries = Vec::new();
-        let places = settlements.all().iter().map(|place| (Subject::Settlement(place.clone()), Vec::new()));
-        let roads = roads.map(|(road, of_refs)| (Subject::Road(road), of_refs));
-        for (subject, of_refs) in places.chain(roads) {
-            let (text, by_ref, town) = match &subject {
-                Subject::Settlement(place) => (&*place.name, false, None),
-                Subject::Road(road) => (&*road.text, road.by_ref, settlements.around(middle(road))),
+        let places =
+            settlements.all().iter().map(|one| (Subject::Settlement(one.clone()), Vec::new(), BTreeSet::new()));
+        let roads = roads.map(|IndexedRoad { road, refs, places }| {
+            let towns: BTreeSet<&str> =
+                places.into_iter().filter_map(|at| settlements.around(at)).map(|town| &*town.name).collect();
+            let town = towns.first().filter(|_| towns.len() == 1).map(|&name| name.into());
+            (Subject::Road { road, town }, refs, towns)
+        });
+        for (subject, of_refs, towns) in places.chain(roads) {
+            let (text, by_ref) = match &subject {
+                Subject::Settlement(place) => (&*place.name, false),
+                Subject::Road { road, .. } => (&*road.text, road.by_ref),
             };
             let name = fold::words(text);
-            let of_town = town.map_or_else(Vec::new, |place| fold::words(&place.name));
+            let of_town: BTreeSet<String> = towns.into_iter().flat_map(fold::words).collect();
             let named = name.len().min(usize::from(u8::MAX / 2));
             // `Goethe Straße` is also found as `goethestr`.
             let joined = (0..).zip(name.windows(2).take(named).map(<[String]>::concat));
@@ -179,7 +197,7 @@ impl Finder {
     /// All roads, in the order of their names.
     pub(in super::super) fn roads(&self) -> impl Iterator<Item = &WholeRoad> {
         self.entries.iter().filter_map(|entry| match &entry.subject {
-            Subject::Road(road) => Some(road),
+            Subject::Road { road, .. } => Some(road),
             Subject::Settlement(_) => None,
         })
     }
@@ -310,21 +328,24 @@ fn same_number(a: &str, b: &str) -> bool {
 impl Entry {
     fn rank(&self, typed: &[Typed], without: u8) -> Option<MatchRank> {
         let (mut worst, mut slips, mut missing) = (Fit::Whole, 0_u8, 0_u8);
-        let (mut in_order, mut known, mut of_its_own) = (true, false, false);
+        let (mut in_order, mut known) = (true, false);
+        // A word that the road's place has, too, finds the place and not all its roads.
+        let (mut all_own, mut one_own) = (true, false);
         for (i, Typed { fits, telling, slips_tell }) in (0..).zip(typed) {
             let best = |of_town: bool| {
                 let words = self.words.iter().filter(|(at, _)| (*at == OF_TOWN) == of_town);
                 words.map(|&(at, word)| (fits[word as usize], at != i)).min().unwrap_or((Fit::Not, true))
             };
-            let own = best(false);
-            of_its_own |= own.0 != Fit::Not;
-            let (fit, elsewhere) = if own.0 == Fit::Not { best(true) } else { own };
+            let (own, of_town) = (best(false), best(true));
+            all_own &= own.0 != Fit::Not;
+            one_own |= own.0 != Fit::Not && of_town.0 == Fit::Not;
+            let (fit, elsewhere) = if own.0 <= Fit::Within || own.0 <= of_town.0 { own } else { of_town };
             match fit {
                 Fit::Not => missing += 1,
                 Fit::Slip(number) => slips += number,
                 _ => {}
             }
-            known |= *telling && (fit < Fit::Within || (*slips_tell && matches!(fit, Fit::Slip(_))));
+            known |= *telling && (own.0 < Fit::Within || (*slips_tell && matches!(own.0, Fit::Slip(_))));
             in_order &= !elsewhere;
             if fit != Fit::Not {
                 worst = worst.max(fit);
@@ -332,7 +353,7 @@ impl Entry {
         }
         let all_named = typed.len() == usize::from(self.named);
         match () {
-            () if !of_its_own || missing > without || (missing > 0 && !known) => None,
+            () if !(all_own || one_own) || missing > without || (missing > 0 && !known) => None,
             () if missing > 0 => Some(MatchRank::Without(missing)),
             () if slips > 0 => Some(MatchRank::Slips(slips)),
             () if worst == Fit::Within => Some(MatchRank::Within),
@@ -343,11 +364,14 @@ impl Entry {
     }
 }
 
-/// The middle of the box around a road.
-fn middle(road: &WholeRoad) -> LonLat {
-    let e7 = |a: f64, b: f64| (f64::midpoint(a, b) * 1e7).round() as i32;
-    let Bounds { west, south, east, north } = road.bounds;
-    LonLat { lon_e7: e7(west, east), lat_e7: e7(south, north) }
+/// Where a road lies: a position of some of its ways.
+fn places_of(network: &Network, road: &WholeRoad) -> Vec<LonLat> {
+    let every = road.ways.len().div_ceil(MOST_PLACES).max(1);
+    let first = |&way: &u32| {
+        let edge = network.edges.get(edges_of(network, way).next()?.index())?;
+        network.positions(edge).next()
+    };
+    road.ways.iter().step_by(every).filter_map(first).collect()
 }
 
 /// The refs of a road's ways, folded and without spaces.

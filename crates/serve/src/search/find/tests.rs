@@ -4,7 +4,7 @@
 use super::*;
 use crate::osm::BackdropShape;
 use crate::osm::facts::BackdropKind;
-use crate::rows::MapBackdrop;
+use crate::rows::{Bounds, MapBackdrop};
 
 const NAMES: &[&str] = &[
     "Northwest Cornell Road",
@@ -41,16 +41,18 @@ fn road(number: u32, text: &str, by_ref: bool, lon: f64) -> WholeRoad {
 
 fn name_of<'f>(hit: &Found<'f>) -> &'f str {
     match hit.subject {
-        Subject::Road(road) => &road.text,
+        Subject::Road { road, .. } => &road.text,
         Subject::Settlement(place) => &place.name,
     }
 }
 
 fn finder() -> Finder {
     let road = |number, text, by_ref| road(number, text, by_ref, 0.0);
-    let names = (0..).zip(NAMES).map(|(number, text)| (road(number, text, false), Vec::new()));
-    let refs = (50..).zip(REFS).map(|(number, text)| (road(number, text, true), Vec::new()));
-    let other = (road(99, "Pacific Highway", false), vec!["i5".to_owned(), "ca12".to_owned()]);
+    let named = |road| IndexedRoad { road, refs: Vec::new(), places: Vec::new() };
+    let names = (0..).zip(NAMES).map(|(number, text)| named(road(number, text, false)));
+    let refs = (50..).zip(REFS).map(|(number, text)| named(road(number, text, true)));
+    let of_refs = vec!["i5".to_owned(), "ca12".to_owned()];
+    let other = IndexedRoad { refs: of_refs, ..named(road(99, "Pacific Highway", false)) };
     Finder::of(names.chain(refs).chain([other]), Settlements::default()).unwrap()
 }
 
@@ -123,16 +125,22 @@ fn places_are_found_and_their_names_tell_roads_apart() {
         place(2, BackdropKind::Town, "Sankt Anton", 1_000_000),
         place(3, BackdropKind::Hamlet, "Dorf", 2_000_000),
     ]);
+    let of = |number, text, e7: &[i32]| {
+        let places = e7.iter().map(|&lon_e7| LonLat { lon_e7, lat_e7: 0 }).collect();
+        IndexedRoad { road: road(number, text, false, 0.0), refs: Vec::new(), places }
+    };
     let roads = [
-        road(1, "Dorfstraße", false, 0.0),
-        road(2, "Dorfstraße", false, 0.1),
-        road(3, "Dorf", false, 0.5),
-        road(4, "Kirchweg", false, 0.1),
+        of(1, "Dorfstraße", &[0]),
+        of(2, "Dorfstraße", &[1_000_000]),
+        of(3, "Dorf", &[5_000_000]),
+        of(4, "Kirchweg", &[1_000_000]),
+        of(5, "Landstraße", &[0, 500_000, 1_000_000]),
+        of(6, "Antonsweg", &[1_000_000]),
     ];
-    let finder = Finder::of(roads.into_iter().map(|road| (road, Vec::new())), places).unwrap();
+    let finder = Finder::of(roads.into_iter(), places).unwrap();
     let found = |typed: &str| -> Vec<(String, u32)> {
         let number = |hit: &Found<'_>| match hit.subject {
-            Subject::Road(road) => road.ways[0],
+            Subject::Road { road, .. } => road.ways[0],
             Subject::Settlement(_) => 0,
         };
         finder.find(typed).iter().map(|hit| (name_of(hit).to_owned(), number(hit))).collect()
@@ -144,5 +152,10 @@ fn places_are_found_and_their_names_tell_roads_apart() {
     assert_eq!(found("Dorfstrasse Unterdorf")[0], ("Dorfstraße".to_owned(), 1));
     assert_eq!(found("dorf")[..2], of(&[("Dorf", 0), ("Dorf", 3)]), "a place is before a road of the same name");
     assert_eq!(found("kirchweg, sankt anton"), of(&[("Kirchweg", 4)]));
+    for town in ["Unterdorf", "Sankt Anton"] {
+        assert_eq!(found(&format!("Landstr. {town}")), of(&[("Landstraße", 5)]), "a road lies in several places");
+    }
+    assert_eq!(found("Nordstr. Unterdorf"), of(&[("Unterdorf", 0)]), "the place alone finds no road of it");
+    assert_eq!(found("anton"), of(&[("Antonsweg", 6), ("Sankt Anton", 0)]));
     assert_eq!(finder.town(LonLat { lon_e7: 1_010_000, lat_e7: 0 }).map(|town| &*town.name), Some("Sankt Anton"));
 }
