@@ -21,11 +21,13 @@ fn page(place: &WorkFolder, places: [&str; 2], more: &str) -> String {
 }
 
 #[test]
-fn a_certified_way_is_a_yes_with_what_it_rests_on() {
+fn a_certified_way_says_so_and_what_it_rests_on() {
     let place = WorkFolder::with_wide_demo(VEHICLE);
     let said = page(&place, ALONG, "--case A-17<b> --applicant Miller&Sons");
     for part in [
-        "<h2>Yes: certified</h2>",
+        "<h2>Certified on the whole way</h2>",
+        "<th>From</th><td>latitude -30.21798, longitude 126.05043",
+        "<th>To</th>",
         "It is no permit.",
         "<td>A-17&lt;b&gt;</td>",
         "<td>Miller&amp;Sons</td>",
@@ -47,12 +49,12 @@ fn a_certified_way_is_a_yes_with_what_it_rests_on() {
 }
 
 #[test]
-fn a_way_under_conditions_is_no_yes_and_lists_them() {
+fn a_way_under_conditions_is_not_certified_and_lists_them() {
     let place = WorkFolder::with_wide_demo(VEHICLE);
     let said = page(&place, ROUND_A_CORNER, "");
     let answer = place.netcert(&format!("{} --format json", line(ROUND_A_CORNER))).succeeds().json();
     let conditions = answer["conditional"]["conditions"].as_array().unwrap().len();
-    assert!(said.contains("<h2>Only under conditions: not certified</h2>") && !said.contains("Yes:"));
+    assert!(said.contains("<h2>Only under conditions: not certified</h2>") && !said.contains("Certified on"));
     let list = said.split("What would have to be so").nth(1).unwrap().split("</table>").next().unwrap();
     assert_eq!(list.matches("<tr><td>").count(), conditions, "{list}");
     let feet = page(&place, ROUND_A_CORNER, "--decision-units feet");
@@ -64,12 +66,17 @@ fn without_a_way_the_sheet_says_no_and_what_stands_in_it() {
     let place = WorkFolder::with_wide_demo(VEHICLE);
     let said = page(&place, ROUND_A_CORNER, "--certified-only");
     let answer = place.netcert(&format!("{} --certified-only --format json", line(ROUND_A_CORNER))).succeeds().json();
-    assert!(
-        said.contains("<h2>No: not certified</h2>") && said.contains("That does not say that no driver could do it.")
-    );
+    for part in [
+        "<h2>Not certified</h2>",
+        "That does not say that no driver could do it.",
+        "Nobody asked whether measurements would help.",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!said.contains("☐ granted"));
     let list = said.split("What stands in the way").nth(1).unwrap().split("</table>").next().unwrap();
     assert_eq!(list.matches("<tr><td>").count(), answer["obstacles"].as_array().unwrap().len());
-    assert!(list.contains("too narrow"), "{list}");
+    assert!(list.contains("not certified: width") && list.contains("longitude 126."), "{list}");
 }
 
 #[test]

@@ -20,7 +20,7 @@
 //! | `vehicle` | a vehicle with its dimensions |
 //! | `route` | the leeway along a route, and the route's shape |
 //! | `sheet` | a page to print: a route under conditions |
-//! | `decision` | a page to file: yes, no, or yes under conditions for one vehicle on one way |
+//! | `decision` | a page to file: whether one vehicle is certified on one way, or under which conditions |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
 //! | `corners` | the corners that a vehicle takes |
 

@@ -93,8 +93,8 @@ pub(crate) struct Route {
     /// The units of a sheet that is a page. A needed width is rounded up, and an assumed one down. Tables are in metres.
     #[arg(long, value_enum, default_value_t = sheet::PageUnits::Metres, requires = "sheet")]
     sheet_units: sheet::PageUnits,
-    /// Write a decision sheet: a page to file with a case. It says yes, no, or yes under conditions, what that rests on, and has room to
-    /// sign.
+    /// Write a decision sheet: a page to file with a case. It says whether the way is certified, or under which conditions, what that
+    /// rests on, and has room to sign.
     #[arg(long, value_name = "OUT.html")]
     decision: Option<PathBuf>,
     #[command(flatten)]
@@ -122,7 +122,7 @@ struct CaseArgs {
     applicant: Option<String>,
     /// The applicant's own reference, on the decision sheet.
     #[arg(long, value_name = "TEXT", requires = "decision")]
-    reference: Option<String>,
+    applicant_reference: Option<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -276,8 +276,9 @@ impl Route {
 
 impl Route {
     fn decision(&self, inputs: &RoutingInputs, answer: &Answer) -> String {
-        let CaseArgs { number, applicant, reference } = &self.case;
-        let fields = CaseFields { case: number.clone(), applicant: applicant.clone(), reference: reference.clone() };
+        let CaseArgs { number, applicant, applicant_reference } = &self.case;
+        let reference = applicant_reference.clone();
+        let fields = CaseFields { case: number.clone(), applicant: applicant.clone(), reference };
         let (origin, own) = (&inputs.origin, inputs.settings().policy);
         let basis = DecisionBasis {
             input_name: origin.input_name.clone(),
@@ -286,6 +287,7 @@ impl Route {
             read_by: origin.netcert_version.clone(),
             measurements: origin.measurements,
             at: origin.at.clone(),
+            conditions_sought: !self.certified_only,
             strips: [own, self.at_most.unwrap_or(own)],
         };
         let vehicle = &inputs.driver.model.vehicle;

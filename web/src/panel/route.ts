@@ -91,8 +91,8 @@ export class RoutePanel {
         : this.#blocked(answer, around.search);
     const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, around.command));
     const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
-    // While conditions are looked for, nothing is decided.
-    const decided = around.search !== "searching";
+    // While conditions are looked for, nothing is decided. The sheet is that of the first way.
+    const decided = around.search !== "searching" && around.chosen === 0;
     const decision = h("a", { class: "button small", href: around.decision, target: "_blank", rel: "noopener" }, icon("sheet"), "Decision sheet");
     this.#put(heading, ...content, ...away(answer), same, h("div", { class: "tools" }, clear, decided ? decision : null));
   }

@@ -19,6 +19,8 @@ const AROUND_M: f64 = 150.0;
 /// Up to these sides of the map, metres, these classes of roads are drawn. On a larger one all roads would hide the way.
 const CLASSES: [(f64, RoadClass); 3] =
     [(3_000.0, RoadClass::Busway), (12_000.0, RoadClass::Tertiary), (f64::INFINITY, RoadClass::Secondary)];
+/// A degree of latitude, metres.
+const DEGREE_M: f64 = 111_200.0;
 /// A name of a road needs so much of its line, page units.
 const NAME_ROOM: f64 = 60.0;
 const FRAME: PageFrame = PageFrame { x: 20.0, y: 20.0, width: 960.0, height: 560.0 };
@@ -38,13 +40,22 @@ impl Plane {
     fn degrees(&self, [lon, lat]: [f64; 2]) -> Point {
         offset_m(self.centre, Position { lon, lat }.into())
     }
+
+    /// The position of a point, within some metres.
+    fn inverse(&self, [east_m, north_m]: Point) -> LonLat {
+        let e7 = |metres: f64| (metres / DEGREE_M * 1e7) as i32;
+        let (_, lat) = self.centre.degrees();
+        LonLat {
+            lon_e7: self.centre.lon_e7.saturating_add(e7(east_m / lat.to_radians().cos().max(0.01))),
+            lat_e7: self.centre.lat_e7.saturating_add(e7(north_m)),
+        }
+    }
 }
 
 /// Draws the way of an answer. Of an answer without a way, the one that is blocked.
 pub(super) fn map(network: &Network, answer: &Answer, units: Units) -> String {
     let conditional = answer.conditional.as_ref();
-    let snapped =
-        if answer.snapped.is_empty() { conditional.map_or(&[][..], |one| &one.snapped) } else { &answer.snapped };
+    let snapped = super::snapped(answer);
     let Some(first) = snapped.first() else { return String::new() };
     let plane = Plane { centre: first.position.into() };
     let route = answer.routes.first().or(conditional.map(|one| &one.route));
@@ -150,18 +161,18 @@ fn roads(picture: &mut Picture, network: &Network, plane: &Plane, view: &View, b
     let [width, height] = bounds.size();
     let least =
         CLASSES.iter().find(|(side_m, _)| width.max(height) <= *side_m).map_or(RoadClass::Motorway, |one| one.1);
-    let within =
-        |[x, y]: Point| (bounds.low[0]..=bounds.high[0]).contains(&x) && (bounds.low[1]..=bounds.high[1]).contains(&y);
+    // In degrees first: a region may have millions of edges.
+    let [west_south, east_north] = [bounds.low, bounds.high].map(|corner| plane.inverse(corner));
+    let near = |at: LonLat| {
+        (west_south.lon_e7..=east_north.lon_e7).contains(&at.lon_e7)
+            && (west_south.lat_e7..=east_north.lat_e7).contains(&at.lat_e7)
+    };
     let mut drawn = BTreeSet::new();
-    for edge in &network.edges {
-        let class = network.road(edge).class;
+    for edge in network.edges.iter().filter(|edge| network.road(edge).class <= least) {
         // Both directions have one shape.
-        if class > least || !drawn.insert(edge.shape.start) {
-            continue;
-        }
-        let line: Vec<Point> = network.positions(edge).map(|at| offset_m(plane.centre, at)).collect();
-        if line.iter().any(|&at| within(at)) {
-            let width = if class <= RoadClass::Secondary { 2.0 } else { 1.0 };
+        if network.positions(edge).any(near) && drawn.insert(edge.shape.start) {
+            let line: Vec<Point> = network.positions(edge).map(|at| offset_m(plane.centre, at)).collect();
+            let width = if network.road(edge).class <= RoadClass::Secondary { 2.0 } else { 1.0 };
             picture.polyline(&view.all(&line), Style::line(palette::PALE, width));
         }
     }

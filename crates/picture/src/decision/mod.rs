@@ -1,10 +1,11 @@
-//! A decision sheet: one page to file with a case. It says yes, no, or yes under conditions for one vehicle on one way, what that rests on, and
-//! has room for the decision of a person.
+//! A decision sheet: one page to file with a case. It says whether one vehicle is certified on one way, or under which conditions, what that rests
+//! on, and has room for the decision of a person.
 //!
 //! The same answer gives the same bytes, so the sheet has no date of its own: whoever signs it writes one.
 
 mod map;
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::lengths::Units;
@@ -13,10 +14,12 @@ use super::svg::escaped;
 use super::vehicle::vehicle as drawing;
 use crate::network::{Network, destination_words};
 use crate::osm::facts::Policy;
-use crate::words::{Named as _, verdict_words};
+use crate::words::Named as _;
 use netcert_base::vehicle::Vehicle;
-use netcert_base::verdict::{UnsafeReason, Verdict};
-use netcert_route::{Answer, Conditional, LimitedStretch, Obstacle, Route, place, title};
+use netcert_route::{Answer, Conditional, LimitedStretch, Obstacle, PartKind, Position, Route, Snapped, place, title};
+
+/// More than this is missing where no bound holds, metres.
+const MOST_MISSING_M: f64 = 100.0;
 
 /// What an office writes on a decision sheet. What is `None` is left blank, to be filled in.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -44,6 +47,8 @@ pub struct DecisionBasis {
     pub measurements: usize,
     /// The time of the journey, local time. `None`: of all times together.
     pub at: Option<String>,
+    /// Whether a way under conditions was looked for where none is certified.
+    pub conditions_sought: bool,
     /// The strip that the vehicle may use, and the widest one if the way may climb.
     pub strips: [Policy; 2],
 }
@@ -73,11 +78,11 @@ pub fn decision(
         (None, None) => Outcome::No,
     };
     let mut page = styled_head(&format!("Decision on a route for {}", vehicle.id), style);
-    page += &case(fields, basis);
-    page += &verdict(network, answer, outcome, units);
+    page += &case(network, answer, fields, basis);
+    page += &verdict(network, answer, outcome, basis, units);
     match outcome {
         Outcome::OnlyIf(conditional) => page += &conditions(network, conditional, units),
-        Outcome::No => page += &blocked(network, answer, units),
+        Outcome::No => page += &blocked(network, vehicle, answer, units),
         Outcome::Yes(_) => {}
     }
     let _ = write!(page, "<h2>Map</h2>{}", map::map(network, answer, units));
@@ -85,8 +90,8 @@ pub fn decision(
         page += &way(network, vehicle, route, outcome, units);
     }
     let _ = write!(page, "<h2>Vehicle</h2><div class=\"drawing\">{}</div>", drawing(vehicle));
-    page += &rests_on(vehicle, basis, outcome);
-    page += &to_sign();
+    page += &rests_on(vehicle, basis, outcome, units);
+    page += &to_sign(outcome);
     page += "<p>Map data © OpenStreetMap contributors, Open Database License 1.0 (openstreetmap.org/copyright), or as the extract's own \
              licence says.</p></body></html>\n";
     page
@@ -111,23 +116,49 @@ fn rows(all: &[(&str, String)]) -> String {
     format!("<table><tbody>{}</tbody></table>", all.iter().map(row).collect::<String>())
 }
 
-fn case(fields: &CaseFields, basis: &DecisionBasis) -> String {
+fn case(network: &Network, answer: &Answer, fields: &CaseFields, basis: &DecisionBasis) -> String {
     let text = |field: &Option<String>| field.clone().unwrap_or_default();
-    rows(&[
+    let mut all = vec![
         ("Case", text(&fields.case)),
         ("Applicant", text(&fields.applicant)),
         ("Applicant's reference", text(&fields.reference)),
-        (
-            "Time of the journey",
-            basis.at.clone().unwrap_or_else(|| "any: what is closed at some times is closed".to_owned()),
-        ),
-    ])
+    ];
+    let places = snapped(answer);
+    for (number, place) in places.iter().enumerate() {
+        let name = match number {
+            0 => "From",
+            _ if number + 1 == places.len() => "To",
+            _ => "Over",
+        };
+        let Position { lon, lat } = place.position;
+        let road =
+            place.on.first().map_or_else(String::new, |on| format!(", {}", title(network, PartKind::Edge(on.edge))));
+        all.push((name, format!("latitude {lat:.5}, longitude {lon:.5}{road}")));
+    }
+    all.push((
+        "Time of the journey",
+        basis.at.clone().unwrap_or_else(|| "any: what is closed at some times is closed".to_owned()),
+    ));
+    rows(&all)
 }
 
-fn verdict(network: &Network, answer: &Answer, outcome: Outcome<'_>, units: Units) -> String {
+/// The places of the question, moved to the road.
+fn snapped(answer: &Answer) -> &[Snapped] {
+    match &answer.conditional {
+        Some(conditional) if answer.snapped.is_empty() => &conditional.snapped,
+        _ => &answer.snapped,
+    }
+}
+
+/// A position as a line of its own in a table.
+fn at(place: Option<[f64; 2]>) -> String {
+    place.map_or_else(String::new, |[lon, lat]| format!("<br>latitude {lat:.5}, longitude {lon:.5}"))
+}
+
+fn verdict(network: &Network, answer: &Answer, outcome: Outcome<'_>, basis: &DecisionBasis, units: Units) -> String {
     let (word, more) = match outcome {
         Outcome::Yes(route) => {
-            ("Yes: certified", format!("One certificate covers the whole way. {}", oncoming(network, route, units)))
+            ("Certified on the whole way", format!("One certificate covers it. {}", oncoming(network, route, units)))
         }
         Outcome::OnlyIf(conditional) => {
             let count = conditional.conditions.len();
@@ -144,32 +175,44 @@ fn verdict(network: &Network, answer: &Answer, outcome: Outcome<'_>, units: Unit
                 format!("The way would be certified if {count} {conditions} {hold} on site. Nothing here says so.{of}"),
             )
         }
-        Outcome::No => {
-            let known = answer.obstacles.as_ref().map_or(0, Vec::len);
-            let more = if known == 0 {
-                "No roads that this vehicle may lawfully use lead there, as far as the map knows.".to_owned()
-            } else {
-                "On every way some place is forbidden to this vehicle, or it cannot be proved that the vehicle stays on the road. The fewest such \
-                 places are below. That does not say that no driver could do it."
-                    .to_owned()
-            };
-            ("No: not certified", more)
-        }
+        Outcome::No => ("Not certified", not_certified(answer, basis)),
     };
     format!("<h2>{word}</h2><p class=\"scope\">{} It is no permit.</p>", escaped(&more))
 }
 
-/// What other traffic has to know of a route.
+/// What was not found, and what was not looked for.
+fn not_certified(answer: &Answer, basis: &DecisionBasis) -> String {
+    if answer.obstacles.as_ref().is_none_or(Vec::is_empty) {
+        return "No roads lead there that this vehicle may lawfully use, as far as the map knows.".to_owned();
+    }
+    let searched = if answer.gave_up {
+        "The search ended before all ways were tried. On those that were tried, "
+    } else {
+        "On every way "
+    };
+    let conditions = match (basis.conditions_sought, answer.conditions_cut_short) {
+        (false, _) => " Nobody asked whether measurements would help.",
+        (true, true) => " The search for measurements that would help was ended before it was through.",
+        (true, false) => " No measurements were found that would help.",
+    };
+    format!(
+        "{searched}some place is forbidden to this vehicle, or it cannot be proved that the vehicle stays on the road there. The cheapest set of \
+         such places is below. That does not say that no driver could do it.{conditions}"
+    )
+}
+
+/// What other traffic has to know of a route. Inside crossings there are no lanes.
 fn oncoming(network: &Network, route: &Route, units: Units) -> String {
     let uses: Vec<_> = route.uses.iter().filter(|used| used.strip == Policy::Carriageway).collect();
     if uses.is_empty() {
-        return "No oncoming lane is used.".to_owned();
+        return "Outside crossings no oncoming lane is used.".to_owned();
     }
     let length_m: f64 = uses.iter().map(|used| used.to_m - used.from_m).sum();
     let places = if uses.len() == 1 { "place" } else { "places" };
-    let of = uses.first().map_or("oncoming lane", |used| used.words(network));
+    let what: BTreeSet<&str> = uses.iter().map(|used| used.words(network)).collect();
     format!(
-        "Beyond all lanes of its direction ({of}) for {} at {} {places}: oncoming traffic must be held back there.",
+        "Beyond all lanes of its direction ({}) for {} at {} {places}: oncoming traffic must be held back there.",
+        what.into_iter().collect::<Vec<_>>().join(", "),
         units.along(length_m),
         uses.len()
     )
@@ -234,57 +277,64 @@ fn conditions(network: &Network, conditional: &Conditional, units: Units) -> Str
         let attested = condition.attested().map_or_else(String::new, |by| format!("<br>attested: {}", escaped(&by)));
         let _ = write!(
             page,
-            "<tr><td>{number}</td><td>{}{attested}</td><td>{}</td><td class=\"fill\" contenteditable=\"true\"></td></tr>",
+            "<tr><td>{number}</td><td>{}{}{attested}</td><td>{}</td><td class=\"fill\" contenteditable=\"true\"></td></tr>",
             escaped(&condition.title(network)),
+            at(condition.place(network)),
             escaped(&super::sheet::wanted(condition, units)),
         );
     }
     page + "</tbody></table>"
 }
 
-fn blocked(network: &Network, answer: &Answer, units: Units) -> String {
+fn blocked(network: &Network, vehicle: &Vehicle, answer: &Answer, units: Units) -> String {
     let mut page = String::new();
     let obstacles = answer.obstacles.as_deref().unwrap_or_default();
     if !obstacles.is_empty() {
-        page += "<h2>What stands in the way</h2><table><thead><tr><th>No.</th><th>Where</th><th>Why</th><th>At least missing</th></tr></thead><tbody>";
+        page += "<h2>What stands in the way</h2><table><thead><tr><th>No.</th><th>Where</th><th>Why</th><th>Missing</th></tr></thead><tbody>";
         for (number, obstacle) in (1..).zip(obstacles) {
-            let Obstacle { at, permit, missing_m, .. } = obstacle;
             let _ = write!(
                 page,
-                "<tr><td>{number}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                escaped(&title(network, *at)),
-                escaped(&why(permit.verdict)),
-                missing_m.map_or_else(String::new, |missing_m| units.at_least(missing_m)),
+                "<tr><td>{number}</td><td>{}{}</td><td>{}</td><td>{}</td></tr>",
+                escaped(&title(network, obstacle.at)),
+                at(place(network, obstacle.at)),
+                escaped(&why(network, vehicle, obstacle)),
+                missing(obstacle, units),
             );
         }
         page += "</tbody></table>";
     }
     if !answer.nothing_helps.is_empty() {
-        let all = answer.nothing_helps.iter().map(|&at| {
-            let where_ = place(network, at).map_or_else(String::new, |[lon, lat]| format!(" ({lat:.5}, {lon:.5})"));
-            format!("<li>{}{where_}</li>", escaped(&title(network, at)))
-        });
-        let all: String = all.collect();
+        let one = |&part: &PartKind| format!("<li>{}{}</li>", escaped(&title(network, part)), at(place(network, part)));
+        let all: String = answer.nothing_helps.iter().map(one).collect();
         let _ = write!(page, "<p>No kerb radius, width or paving that was tried opens these places:</p><ul>{all}</ul>");
     }
     page
 }
 
-/// Why a place stands in the way.
-fn why(verdict: Verdict) -> String {
-    match verdict {
-        Verdict::Unsafe(UnsafeReason::Width) => "too narrow".to_owned(),
-        Verdict::Unsafe(UnsafeReason::Articulation) => "a hinge would fold too far".to_owned(),
-        Verdict::Unsafe(UnsafeReason::SteeringLock) => "it would have to steer more than it can".to_owned(),
-        Verdict::Safe => "a road to a destination only, or narrow for a whole way".to_owned(),
-        _ => {
-            let (kind, reason) = verdict_words(verdict);
-            format!("{kind}: {}", reason.replace('_', " "))
-        }
+/// Why a place stands in the way, in the words of the command line.
+fn why(network: &Network, vehicle: &Vehicle, obstacle: &Obstacle) -> String {
+    if let Some(tag) = obstacle.tag(network, vehicle) {
+        return format!("open to a destination only ({})", destination_words(&tag));
+    }
+    let (verdict, reason) = obstacle.words(network, vehicle);
+    let verdict = match verdict {
+        "unsafe" => "not certified",
+        "refuted" => "passes by itself, and not as part of a whole way",
+        other => other,
+    };
+    if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {}", reason.replace('_', " ")) }
+}
+
+/// What is missing, if it is a matter of metres. At a turn it is at least that.
+fn missing(obstacle: &Obstacle, units: Units) -> String {
+    match obstacle.missing_m.filter(|missing_m| *missing_m < MOST_MISSING_M) {
+        Some(missing_m) if obstacle.at.is_turn() => format!("at least {}", units.at_most(missing_m)),
+        Some(missing_m) => units.at_least(missing_m),
+        None => String::new(),
     }
 }
 
-fn rests_on(vehicle: &Vehicle, basis: &DecisionBasis, outcome: Outcome<'_>) -> String {
+fn rests_on(vehicle: &Vehicle, basis: &DecisionBasis, outcome: Outcome<'_>, units: Units) -> String {
     let strip = |policy: Policy| match policy {
         Policy::Lane => "its own lane",
         Policy::Direction => "all lanes of its direction",
@@ -308,12 +358,15 @@ fn rests_on(vehicle: &Vehicle, basis: &DecisionBasis, outcome: Outcome<'_>) -> S
         ("Date of the map", or_none(&basis.map_time)),
         ("BLAKE3 of the map", or_none(&basis.input_blake3)),
         ("Measurements", measured),
-        ("Read by", format!("netcert {}", basis.read_by)),
+        ("Map read by", format!("netcert {}", basis.read_by)),
     ];
     if let Some(route) = outcome.route() {
         let result = &route.certificate.result;
         let tolerance_m = result.shrink * vehicle.tracking_tolerance_m;
-        all.push(("Steered within", format!("±{tolerance_m:.3} m of the planned path by the steer axle")));
+        all.push((
+            "Steered within",
+            format!("{} to either side of the planned path by the steer axle", units.at_most(tolerance_m)),
+        ));
     }
     format!(
         "<h2>What this rests on</h2>{}<p class=\"scope\">Within the stated model, widths and error bounds. Nothing is said of heights, weights \
@@ -323,9 +376,17 @@ fn rests_on(vehicle: &Vehicle, basis: &DecisionBasis, outcome: Outcome<'_>) -> S
     )
 }
 
-fn to_sign() -> String {
+/// Room for the decision of the office. The boxes fit the answer.
+fn to_sign(outcome: Outcome<'_>) -> String {
+    let boxes = match outcome {
+        Outcome::Yes(_) => "☐ granted &nbsp; ☐ granted with conditions of the office &nbsp; ☐ refused",
+        Outcome::OnlyIf(_) => {
+            "☐ granted, all conditions above were found to hold &nbsp; ☐ to be looked at again &nbsp; ☐ refused"
+        }
+        Outcome::No => "☐ refused &nbsp; ☐ to be looked at again",
+    };
     format!(
-        "<h2>Decision</h2><p>☐ granted &nbsp; ☐ granted under the conditions above &nbsp; ☐ refused</p>{}",
+        "<h2>Decision of the office</h2><p>{boxes}</p>{}<p>The decision is that of the office. The answer above is no permit.</p>",
         rows(&[
             ("Remarks", String::new()),
             ("Valid from, until", String::new()),

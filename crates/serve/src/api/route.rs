@@ -72,6 +72,7 @@ pub(in super::super) fn decision_html(
         read_by: read.map_or_else(String::new, |run| run.netcert_version.clone()),
         measurements: region.read(Database::register)?.entries.len(),
         at: None,
+        conditions_sought: ask.parameter("conditions") != Some("none"),
         strips: [policy, widest],
     };
     let (roads, fields, style) = (region.roads()?, CaseFields::default(), SheetStyle::At(SHEET_STYLE_AT));
