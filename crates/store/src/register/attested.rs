@@ -76,7 +76,7 @@ impl Database {
         );
         let rows = self.session.run(async |c| {
             let query = sqlx::query_as::<_, (u32, String, String, Vec<u8>)>(sqlx::AssertSqlSafe(sql));
-            values.into_iter().fold(query, |query, value| query.bind(value)).fetch_all(c).await
+            values.into_iter().fold(query, sqlx::query::QueryAs::bind).fetch_all(c).await
         })?;
         let path = self.session.path.clone();
         let countries = Countries::load()
