@@ -173,11 +173,7 @@ impl Explain {
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
-                let near = match turn.strip {
-                    Policy::Lane => "its own lane",
-                    Policy::Direction => "all lanes of its direction",
-                    Policy::Carriageway => "the whole carriageway",
-                };
+                let near = turn.strip.words();
                 let note = format!(
                     "This is the certificate of the turn alone, on the best of its paths; its two edges have verdicts of their own. \
                      Near the turn the vehicle may use {near}. Kerb radii are assumed where they are neither surveyed nor \

@@ -1,7 +1,7 @@
 //! Where a vehicle is attested to go: by a sign or a network on the map, or by the register of measurements.
 //!
-//! What is attested is not certified. It tells which conditions of a route an authority has answered in its way, and the search for a way
-//! under conditions prefers it.
+//! What is attested is not certified. Conditions of a route say who attests their place, and the search for a way under conditions prefers
+//! places that are attested.
 
 use rustc_hash::FxHashMap;
 

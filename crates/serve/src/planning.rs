@@ -10,10 +10,9 @@ use super::ids::ids_as_text;
 use super::memo::Recent;
 use super::problem::Problem;
 use super::region::{CertifiedVehicle, RegionState};
-use crate::picture::{self, SheetStyle, Units};
 use crate::route::{
-    self, Answer, Conditional, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError,
-    Speeds, Unanswered,
+    self, Answer, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError, Speeds,
+    Unanswered,
 };
 use crate::stop::Stop;
 use crate::words::{Named as _, verdict_words};
@@ -43,26 +42,12 @@ pub(super) struct RouteQuestion {
     pub(super) stop: Stop,
 }
 
-/// An answer as JSON and as it was found, and the sheets of its route under conditions, if it has one.
+/// An answer as JSON, and as it was found: sheets are written from it.
 #[derive(Debug)]
 pub(super) struct PlannedAnswer {
     pub(super) members: Value,
     pub(super) found: Answer,
-    pub(super) sheets: Option<Sheets>,
 }
-
-/// The sheet of a route's conditions in its three forms.
-#[derive(Debug)]
-pub(super) struct Sheets {
-    pub(super) html: String,
-    /// The same in feet and inches.
-    pub(super) html_in_feet: String,
-    pub(super) csv: String,
-    pub(super) geojson: String,
-}
-
-/// The address of the style sheet of [`Sheets::html`].
-pub(super) const SHEET_STYLE_AT: &str = "/api/sheet.css";
 
 type Reply = mpsc::Sender<Result<PlannedAnswer, Problem>>;
 
@@ -193,8 +178,7 @@ impl PlannerThread {
         members["policy"] = json!(self.driver.permits.settings.policy.name());
         members["at_most"] = json!(self.ladder.as_ref().map(|ladder| ladder.widest.permits.settings.policy.name()));
         ids_as_text(&mut members);
-        let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
-        Ok(PlannedAnswer { members, found: answer, sheets })
+        Ok(PlannedAnswer { members, found: answer })
     }
 
     /// Which place is too far from a road that may be used, the nearest such road, and why the road beside the place is none.
@@ -234,16 +218,5 @@ impl PlannerThread {
         let mut members = json!({"parameter": parameter, "place": place, "nearest": nearest, "beside": beside});
         ids_as_text(&mut members);
         Problem::no_road(detail, members)
-    }
-
-    fn sheets(&self, conditional: &Conditional) -> Sheets {
-        let (network, vehicle) = (&self.roads.network, &self.driver.model.vehicle);
-        let style = SheetStyle::At(SHEET_STYLE_AT);
-        Sheets {
-            html: picture::sheet(network, vehicle, conditional, Units::Metres, style),
-            html_in_feet: picture::sheet(network, vehicle, conditional, Units::Feet, style),
-            csv: route::sheet_csv(network, conditional),
-            geojson: route::sheet_geojson(network, vehicle, conditional),
-        }
     }
 }

@@ -272,9 +272,7 @@ impl Route {
         }
         Ok(())
     }
-}
 
-impl Route {
     fn decision(&self, inputs: &RoutingInputs, answer: &Answer) -> String {
         let CaseArgs { number, applicant, applicant_reference } = &self.case;
         let reference = applicant_reference.clone();

@@ -335,16 +335,11 @@ fn missing(obstacle: &Obstacle, units: Units) -> String {
 }
 
 fn rests_on(vehicle: &Vehicle, basis: &DecisionBasis, outcome: Outcome<'_>, units: Units) -> String {
-    let strip = |policy: Policy| match policy {
-        Policy::Lane => "its own lane",
-        Policy::Direction => "all lanes of its direction",
-        Policy::Carriageway => "the whole carriageway",
-    };
     let [own, widest] = basis.strips;
     let strips = if widest > own {
-        format!("{}, and where that is not enough up to {}", strip(own), strip(widest))
+        format!("{}, and where that is not enough up to {}", own.words(), widest.words())
     } else {
-        strip(own).to_owned()
+        own.words().to_owned()
     };
     let or_none = |text: &Option<String>| text.clone().unwrap_or_else(|| "not given".to_owned());
     let measured = match basis.measurements {

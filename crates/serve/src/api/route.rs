@@ -7,14 +7,16 @@ use serde_json::json;
 
 use super::super::answer::StoredAnswer;
 use super::super::ask::{DecodedRequest, one_of, policy};
-use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router, SHEET_STYLE_AT, Sheets};
+use super::super::planning::{PlannedAnswer, Planners, RouteQuestion, Router};
 use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::{GEOJSON, SCOPE, answered};
+use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::picture::{self, CaseFields, DecisionBasis, SheetStyle, Units};
-use crate::route::{Measure, Question};
+use crate::route::{self, Conditional, Measure, Question};
 use crate::store::Database;
+use crate::vehicle::Vehicle;
 use crate::words::Named;
 
 /// The greatest number of places between beginning and end.
@@ -23,6 +25,9 @@ const MOST_VIA: usize = 8;
 const SNAP_M: f64 = 100.0;
 /// Default of `tries`, the number of whole routes that may fail. Each try costs a certificate over the whole route.
 const TRIES: u32 = 12;
+
+/// The address of the style sheet of pages to print.
+const SHEET_STYLE_AT: &str = "/api/sheet.css";
 
 /// The parameters of a route and of its sheets.
 const PARAMETERS: [&str; 12] = [
@@ -55,14 +60,9 @@ pub(in super::super) fn decision_html(
     planners: &Planners,
     ask: &DecodedRequest,
 ) -> Result<StoredAnswer, Problem> {
-    let units = match ask.parameter("units").unwrap_or("metres") {
-        "metres" => Units::Metres,
-        "feet" => Units::Feet,
-        _ => return Err(Problem::parameter("units", "give metres or feet")),
-    };
+    let units = units(ask)?;
     let planned = planned(region, planners, ask, &["units"])?;
-    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
-    let vehicle = region.certified(ask.required("vehicle")?, policy)?.vehicle;
+    let (vehicle, policy) = vehicle(region, ask)?;
     let widest = strips(region, ask, &vehicle.id, policy)?.into_iter().max().unwrap_or(policy);
     let read = region.runs.iter().find(|run| run.read_extract()).or(region.runs.first());
     let basis = DecisionBasis {
@@ -86,12 +86,10 @@ pub(in super::super) fn sheet_html(
     planners: &Planners,
     ask: &DecodedRequest,
 ) -> Result<StoredAnswer, Problem> {
-    let html: fn(&Sheets) -> &String = match ask.parameter("units").unwrap_or("metres") {
-        "metres" => |sheets| &sheets.html,
-        "feet" => |sheets| &sheets.html_in_feet,
-        _ => return Err(Problem::parameter("units", "give metres or feet")),
-    };
-    sheet(region, planners, ask, &["units"], "text/html; charset=utf-8", html)
+    let units = units(ask)?;
+    sheet(region, planners, ask, &["units"], "text/html; charset=utf-8", |network, vehicle, conditional| {
+        picture::sheet(network, vehicle, conditional, units, SheetStyle::At(SHEET_STYLE_AT))
+    })
 }
 
 /// `/api/sheet.csv`
@@ -100,7 +98,9 @@ pub(in super::super) fn sheet_csv(
     planners: &Planners,
     ask: &DecodedRequest,
 ) -> Result<StoredAnswer, Problem> {
-    sheet(region, planners, ask, &[], "text/csv; charset=utf-8", |sheets| &sheets.csv)
+    sheet(region, planners, ask, &[], "text/csv; charset=utf-8", |network, _, conditional| {
+        route::sheet_csv(network, conditional)
+    })
 }
 
 /// `/api/sheet.geojson`
@@ -109,7 +109,7 @@ pub(in super::super) fn sheet_geojson(
     planners: &Planners,
     ask: &DecodedRequest,
 ) -> Result<StoredAnswer, Problem> {
-    sheet(region, planners, ask, &[], GEOJSON, |sheets| &sheets.geojson)
+    sheet(region, planners, ask, &[], GEOJSON, route::sheet_geojson)
 }
 
 /// `/api/sheet.css`
@@ -125,14 +125,30 @@ fn sheet(
     ask: &DecodedRequest,
     more: &[&str],
     kind: &'static str,
-    form: fn(&Sheets) -> &String,
+    text: impl FnOnce(&Network, &Vehicle, &Conditional) -> String,
 ) -> Result<StoredAnswer, Problem> {
     let planned = planned(region, planners, ask, more)?;
-    let Some(sheets) = &planned.sheets else {
+    let Some(conditional) = &planned.found.conditional else {
         let detail = "there is no route under conditions between these places, so there is nothing to check; /api/route has the answer";
         return Err(Problem::not_found(detail));
     };
-    Ok(StoredAnswer::new(kind, form(sheets).clone().into_bytes()))
+    let (vehicle, _) = vehicle(region, ask)?;
+    Ok(StoredAnswer::new(kind, text(region.roads()?.network(), vehicle, conditional).into_bytes()))
+}
+
+/// The units of a page's lengths.
+fn units(ask: &DecodedRequest) -> Result<Units, Problem> {
+    match ask.parameter("units").unwrap_or("metres") {
+        "metres" => Ok(Units::Metres),
+        "feet" => Ok(Units::Feet),
+        _ => Err(Problem::parameter("units", "give metres or feet")),
+    }
+}
+
+/// The vehicle and the policy of a question.
+fn vehicle<'r>(region: &'r RegionState, ask: &DecodedRequest) -> Result<(&'r Vehicle, Policy), Problem> {
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    Ok((region.certified(ask.required("vehicle")?, policy)?.vehicle, policy))
 }
 
 /// The answer to a question. The last ones are kept.
@@ -143,9 +159,7 @@ fn planned(
     more: &[&str],
 ) -> Result<Arc<PlannedAnswer>, Problem> {
     ask.only(&[&PARAMETERS, more].concat())?;
-    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
-    let certified = region.certified(ask.required("vehicle")?, policy)?;
-    let vehicle = certified.vehicle;
+    let (vehicle, policy) = vehicle(region, ask)?;
     let ride = ride(ask)?;
     let measure = match ask.parameter("least").unwrap_or("time") {
         "time" => Measure::Time,

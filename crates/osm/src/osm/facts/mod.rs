@@ -187,6 +187,18 @@ pub enum Policy {
 
 named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
 
+impl Policy {
+    /// What a vehicle may use, as words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Lane => "its own lane",
+            Self::Direction => "all lanes of its direction",
+            Self::Carriageway => "the whole carriageway",
+        }
+    }
+}
+
 /// The strips of one direction of travel of one way. `None` means no usable width.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossSection {

@@ -20,7 +20,7 @@ use crate::osm::LonLat;
 const MOST_WORDS: usize = 8;
 /// Where fewer roads fit as typed, those are looked for, too, that fit with a slip.
 const FEW: usize = 4;
-/// Of a road with more ways not every way says in which place it lies.
+/// The greatest number of a road's ways that are asked in which place they lie.
 const MOST_PLACES: usize = 16;
 /// The position of words that name the place of a road. By these words alone no road is found.
 const OF_TOWN: u8 = u8::MAX;
@@ -329,7 +329,7 @@ impl Entry {
     fn rank(&self, typed: &[Typed], without: u8) -> Option<MatchRank> {
         let (mut worst, mut slips, mut missing) = (Fit::Whole, 0_u8, 0_u8);
         let (mut in_order, mut known) = (true, false);
-        // A word that the road's place has, too, finds the place and not all its roads.
+        // Words that the road's place has, too, find the place, and not every road in it.
         let (mut all_own, mut one_own) = (true, false);
         for (i, Typed { fits, telling, slips_tell }) in (0..).zip(typed) {
             let best = |of_town: bool| {
