@@ -17,6 +17,7 @@ class Filters(TypedDict):
     verdict: Verdict | None
     min_rsc_m: float | None
     needs_at_most_m: float | None
+    uses: Corridor | None
 
 
 class EdgeFilters(Filters):

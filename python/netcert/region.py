@@ -72,6 +72,7 @@ class Region:
         min_rsc_m: float | None = None,
         needs_at_most_m: float | None = None,
         min_width_source: WidthSource | None = None,
+        uses: Corridor | None = None,
         edge_id: int | None = None,
     ) -> Table:
         """Directed edges with their certificates, in order of the network.
@@ -81,6 +82,7 @@ class Region:
         min_rsc_m         only edges with at least this RSC, metres
         needs_at_most_m   only edges that would be safe with at most this much more width, metres
         min_width_source  only edges whose width comes from this source or a better one
+        uses              only edges for which this is the narrowest policy under which the file has them as safe
         edge_id           only this edge
 
         Raises NotFound if the vehicle is not certified under this policy.
@@ -91,6 +93,7 @@ class Region:
             min_rsc_m=min_rsc_m,
             needs_at_most_m=needs_at_most_m,
             min_width_source=min_width_source,
+            uses=uses,
             edge_id=edge_id,
         )
         return Table(self._file.edges(vehicle_id, corridor, filters))
@@ -104,6 +107,7 @@ class Region:
         verdict: Verdict | None = None,
         min_rsc_m: float | None = None,
         needs_at_most_m: float | None = None,
+        uses: Corridor | None = None,
         turn_id: int | None = None,
     ) -> Table:
         """Turns with their certificates, in order of the network. Options are as in `edges`; `needs_at_most_m` is about kerb radii.
@@ -111,7 +115,12 @@ class Region:
         Raises NotFound if the vehicle's turns are not certified under this policy.
         """
         filters = TurnFilters(
-            bbox=bbox, verdict=verdict, min_rsc_m=min_rsc_m, needs_at_most_m=needs_at_most_m, turn_id=turn_id
+            bbox=bbox,
+            verdict=verdict,
+            min_rsc_m=min_rsc_m,
+            needs_at_most_m=needs_at_most_m,
+            uses=uses,
+            turn_id=turn_id,
         )
         return Table(self._file.turns(vehicle_id, corridor, filters))
 

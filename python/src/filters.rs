@@ -15,6 +15,7 @@ pub(crate) struct Filters {
     verdict: Option<VerdictKind>,
     min_rsc_m: Option<f64>,
     needs_at_most_m: Option<f64>,
+    uses: Option<Policy>,
     /// Only for edges.
     min_width_source: Option<WidthSource>,
     /// An `edge_id` or a `turn_id`.
@@ -29,20 +30,21 @@ impl Filters {
             verdict: word("verdict")?.map(|word| named("verdict", &word)).transpose()?,
             min_rsc_m: member(given, "min_rsc_m")?,
             needs_at_most_m: member(given, "needs_at_most_m")?,
+            uses: word("uses")?.map(|word| named("uses", &word)).transpose()?,
             min_width_source: word("min_width_source")?.map(|word| named("min_width_source", &word)).transpose()?,
             id: member(given, "edge_id")?.or(member(given, "turn_id")?),
         })
     }
 
     pub(crate) fn of_edges(self, vehicle_id: &str, policy: Policy) -> QueryOptions {
-        let Self { area, verdict, min_rsc_m, needs_at_most_m, min_width_source, id: edge_id } = self;
+        let Self { area, verdict, min_rsc_m, needs_at_most_m, uses, min_width_source, id: edge_id } = self;
         let vehicle = vehicle_id.to_owned();
-        QueryOptions { vehicle, policy, area, edge_id, verdict, min_rsc_m, needs_at_most_m, min_width_source }
+        QueryOptions { vehicle, policy, area, edge_id, verdict, min_rsc_m, needs_at_most_m, min_width_source, uses }
     }
 
     pub(crate) fn of_turns(self, vehicle_id: &str, policy: Policy) -> TurnQuery {
-        let Self { area, verdict, min_rsc_m, needs_at_most_m, min_width_source: _, id: turn_id } = self;
-        TurnQuery { vehicle: vehicle_id.to_owned(), policy, area, turn_id, verdict, min_rsc_m, needs_at_most_m }
+        let Self { area, verdict, min_rsc_m, needs_at_most_m, uses, min_width_source: _, id: turn_id } = self;
+        TurnQuery { vehicle: vehicle_id.to_owned(), policy, area, turn_id, verdict, min_rsc_m, needs_at_most_m, uses }
     }
 }
 

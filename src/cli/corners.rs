@@ -15,8 +15,9 @@ use serde_json::{Value, json};
 use super::Session;
 use crate::cli::arguments::values::TableFormat;
 use crate::cli::arguments::vehicle_files::VehicleFiles;
+use crate::cli::output::file::{check_writable, write_file};
 use crate::cli::output::table::Table;
-use crate::cli::output::{results, wrapped, write_picture};
+use crate::cli::output::{results, wrapped};
 
 /// The angles that a turn may have, degrees. A sharper one has no kerb return.
 const ANGLES_DEG: RangeInclusive<f64> = 15.0..=145.0;
@@ -67,6 +68,7 @@ impl Corners {
         if self.svg.is_some() && vehicles.len() > 1 {
             bail!("--svg draws one vehicle; name that vehicle alone with --vehicle");
         }
+        check_writable([self.svg.as_ref()])?;
         let mut tables = Vec::new();
         for vehicle in vehicles {
             let model = Model::new(vehicle)?;
@@ -79,7 +81,7 @@ impl Corners {
             tables.push((vehicle, corners));
         }
         if let (Some(path), [(vehicle, corners)]) = (&self.svg, tables.as_slice()) {
-            write_picture(path, &picture::corners(vehicle, corners))?;
+            write_file(path, picture::corners(vehicle, corners))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         let mut out = results();

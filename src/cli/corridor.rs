@@ -14,6 +14,7 @@ use super::Session;
 use super::explain::write_picture;
 use crate::cli::arguments::values::metres;
 use crate::cli::arguments::vehicle_files::VehicleFiles;
+use crate::cli::output::file::{check_writable, write_file};
 use crate::cli::output::{results, wrapped};
 
 /// The file is read into memory; 64 MiB hold a million points.
@@ -70,6 +71,7 @@ pub(crate) struct Corridor {
 
 impl Corridor {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        check_writable([self.out.as_ref(), self.svg.as_ref()])?;
         let fleet = self.vehicle_files.fleet()?;
         let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
         let given = read(&self.file)?;
@@ -82,7 +84,7 @@ impl Corridor {
         };
         if let Some(path) = &self.out {
             let text = netcert::certificate::text(&given, &model, &certificate, &options)?;
-            std::fs::write(path, text).map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
+            write_file(path, text)?;
         }
         if let Some(path) = &self.svg {
             write_picture(path, &why)?;

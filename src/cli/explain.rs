@@ -24,8 +24,9 @@ use crate::cli::arguments::certify_options;
 use crate::cli::arguments::vehicle_args::{PolicyArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::measurements;
+use crate::cli::output::file::{check_writable, write_file};
 use crate::cli::output::table::Table;
-use crate::cli::output::{self, printable, results, wrapped};
+use crate::cli::output::{printable, results, wrapped};
 
 /// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;
@@ -71,6 +72,7 @@ enum Format {
 
 impl Explain {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        check_writable([self.svg.as_ref()])?;
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
         let policy = certify_options::policy_of(&mut database, self.policy.corridor)?;
@@ -151,7 +153,7 @@ impl Explain {
             let Some(svg) = picture::turn(turn) else {
                 bail!("{}: there is nothing to draw: {}", out.display(), words.headline);
             };
-            output::write_picture(out, &svg)?;
+            write_file(out, &svg)?;
             session.progress.say(&format!("{}: the picture", out.display()));
         }
         let mut out = results();
@@ -325,5 +327,5 @@ pub(super) fn write_picture(path: &std::path::Path, explanation: &Explanation) -
         let words = explain::words(explanation);
         bail!("{}: there is nothing to draw: {}", path.display(), words.headline);
     };
-    output::write_picture(path, &svg)
+    write_file(path, &svg)
 }

@@ -15,8 +15,9 @@ use serde_json::{Value, json};
 use super::Session;
 use crate::cli::arguments::values::TableFormat;
 use crate::cli::arguments::vehicle_files::VehicleFiles;
+use crate::cli::output::file::write_file;
+use crate::cli::output::results;
 use crate::cli::output::table::Table;
-use crate::cli::output::{results, write_picture};
 
 /// Show how vehicles turn at low speed, beside published limits: 90°, 180°, a full circle, and steady off-tracking.
 ///
@@ -58,7 +59,7 @@ impl Manoeuvres {
             let [vehicle] = vehicles.as_slice() else {
                 bail!("--svg draws one vehicle; name that vehicle with --vehicle");
             };
-            write_picture(path, &picture::manoeuvres(vehicle))?;
+            write_file(path, picture::manoeuvres(vehicle))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         let reports: Vec<(&Vehicle, ManoeuvreReport)> = vehicles.iter().map(|v| (*v, manoeuvres::report(v))).collect();

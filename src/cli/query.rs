@@ -51,6 +51,10 @@ Columns:
            row would be safe if its road were nowhere narrower. The width is an estimate, unless the
            vehicle was certified with --needs edges or all
 
+  uses     only where the vehicle is certified under several policies, or with --uses: the narrowest of
+           them under which the row is safe; `-` where none is. Certify more with netcert certify
+           --corridor; the verdict is always that of --corridor
+
 With --relative-to, two columns more, which say nothing of `safe`:
   relative_m    the RSC less that of the reference: at 0 or more, the vehicle needs no more room there;
                 a negative number is what it needs more
@@ -84,6 +88,9 @@ pub(crate) struct Query {
     /// Show only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
+    /// Show only rows for which this is the narrowest width that is certified; see column uses below.
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    uses: Option<Policy>,
     /// Show turns instead of edges: the movements at junctions from one road into another that do not go straight on.
     #[arg(long, conflicts_with = "width_source")]
     turns: bool,
@@ -134,9 +141,10 @@ impl Query {
             min_rsc_m: self.min_rsc,
             needs_at_most_m: self.needs_at_most,
             min_width_source: self.width_source,
+            uses: self.uses,
             ..QueryOptions::new(&self.vehicle.id, set.policy)
         };
-        let head = self.head(set.policy, scope(vehicle.as_ref()) + shared(set.policy) + estimated);
+        let head = self.head(&mut database, set.policy, scope(vehicle.as_ref()) + shared(set.policy) + estimated)?;
         let mut totals = Totals::default();
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
@@ -163,8 +171,9 @@ impl Query {
         mut beside: Option<ReferenceCertificates<'_>>,
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m, needs_at_most_m) = (self.verdict, self.min_rsc, self.needs_at_most);
+        let uses = self.uses;
         let options =
-            TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle.id, policy) };
+            TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, uses, ..TurnQuery::new(&self.vehicle.id, policy) };
         let mut rows = Vec::new();
         for row in database.query_turns(&options)? {
             let relative = relative::beside(&mut beside, row.turn.index.get(), &row.certificate)?;
@@ -174,7 +183,7 @@ impl Query {
         }
         let scope =
             format!("{} Kerb radii of corners are assumed where they are neither surveyed nor mapped.", scope(vehicle));
-        let head = self.head(policy, scope);
+        let head = self.head(database, policy, scope)?;
         let mut out = results();
         turn_rows::write(self.format, &head, &rows, &mut out)?;
         out.flush()?;
@@ -202,11 +211,14 @@ impl Query {
         Ok(if known.include(Needs::Edges) { "" } else { ESTIMATED })
     }
 
-    fn head(&self, policy: Policy, mut scope: String) -> Head {
+    fn head(&self, database: &mut Database, policy: Policy, mut scope: String) -> anyhow::Result<Head> {
         let relative_to = self.relative.relative_to.clone();
         scope += &at_local_time(self.time.at);
         scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
-        Head { vehicle: self.vehicle.id.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
+        let of_vehicle = |set: &&CertifiedSet| set.vehicle_id == self.vehicle.id;
+        let uses = self.uses.is_some() || database.certified()?.iter().filter(of_vehicle).count() > 1;
+        let needs = self.needs_at_most.is_some();
+        Ok(Head { vehicle: self.vehicle.id.clone(), policy, scope, relative_to, needs, uses })
     }
 
     /// Whether a row is shown that the database gave.

@@ -94,6 +94,7 @@ impl Stats {
             Form::Table => {
                 network(&mut out, &stats)?;
                 overview(&mut out, &sets)?;
+                strips(&mut out, &sets, &stats)?;
                 if let Some(compared) = &compared {
                     compared.tell(&mut out)?;
                 }
@@ -151,6 +152,34 @@ fn overview(out: &mut dyn Write, sets: &[Set<'_>]) -> anyhow::Result<()> {
         table.row(start.into_iter().chain(shares(&set.rows)));
     }
     writeln!(out)?;
+    Ok(table.write(out, "")?)
+}
+
+/// Prints by vehicle how much road and how many turns are safe on which strip at least, where several strips are certified.
+fn strips(out: &mut dyn Write, sets: &[Set<'_>], stats: &rows::Stats) -> anyhow::Result<()> {
+    let mut several: Vec<&str> =
+        sets.windows(2).filter(|s| s[0].vehicle == s[1].vehicle).map(|s| s[0].vehicle).collect();
+    several.dedup();
+    if several.is_empty() {
+        return Ok(());
+    }
+    let kinds: Vec<Option<Policy>> = Policy::ALL.iter().copied().map(Some).chain([None]).collect();
+    let heading: Vec<String> = kinds.iter().map(|kind| format!(">{}", kind.map_or("not safe", Policy::name))).collect();
+    let heading: Vec<&str> = ["vehicle", ""].into_iter().chain(heading.iter().map(String::as_str)).collect();
+    let mut table = Table::new(&heading);
+    for vehicle in several {
+        let length = |kind: &Option<Policy>| {
+            let of = stats.strips.iter().filter(|row| row.vehicle_id == vehicle && row.uses == *kind);
+            format!("{} km", km(of.map(|row| row.length_m).sum()))
+        };
+        let turns = |kind: &Option<Policy>| {
+            let of = stats.turn_strips.iter().filter(|row| row.vehicle_id == vehicle && row.uses == *kind);
+            grouped(of.map(|row| row.turns).sum())
+        };
+        table.row([vehicle.to_owned(), "roads".to_owned()].into_iter().chain(kinds.iter().map(length)));
+        table.row([vehicle.to_owned(), "turns".to_owned()].into_iter().chain(kinds.iter().map(turns)));
+    }
+    writeln!(out, "\nThe narrowest of the certified policies under which roads and turns are safe")?;
     Ok(table.write(out, "")?)
 }
 
@@ -312,6 +341,16 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
         }))
     });
     let needs: Vec<Value> = needs.collect();
+    let strips = stats.strips.iter().filter(|row| sets.iter().any(|set| set.vehicle == row.vehicle_id)).map(|row| {
+        json!({
+            "vehicle_id": row.vehicle_id, "highway": row.highway, "uses": row.uses.map(Policy::name), "edges": row.edges,
+            "length_m": row.length_m,
+        })
+    });
+    let turns = stats.turn_strips.iter().filter(|row| sets.iter().any(|set| set.vehicle == row.vehicle_id));
+    let turns =
+        turns.map(|row| json!({"vehicle_id": row.vehicle_id, "uses": row.uses.map(Policy::name), "turns": row.turns}));
+    let (strips, turn_strips): (Vec<Value>, Vec<Value>) = (strips.collect(), turns.collect());
     let runs: Vec<Value> = runs
         .iter()
         .map(|(run, account)| {
@@ -326,6 +365,6 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
         .collect();
     json!({
         "roads": stats.roads, "network": classes, "widths": widths, "certificates": certificates, "needs": needs,
-        "runs": runs,
+        "strips": strips, "turn_strips": turn_strips, "runs": runs,
     })
 }

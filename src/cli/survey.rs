@@ -18,6 +18,7 @@ use serde_json::{Value, json};
 use super::Session;
 use crate::cli::arguments::position::place;
 use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::output::file::{check_writable, write_file};
 use crate::cli::output::rows::csv;
 use crate::cli::output::sheet;
 use crate::cli::output::table::Table;
@@ -75,17 +76,13 @@ enum Format {
 
 impl Survey {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        check_writable([self.sheet.as_ref()])?;
         let pairs = self.pairs.as_deref().map(read_pairs).transpose()?;
         if self.inputs.has_time() {
             bail!("--at: a survey looks for what lacks room at all times; leave the time out");
         }
         let inputs = self.inputs.load(session, "survey")?;
         let found = self.find(&inputs, pairs, session)?;
-        if let Some(path) = &self.sheet {
-            let text = self.sheet_text(path, &inputs, &found)?;
-            std::fs::write(path, text).map_err(|error| anyhow!("{}: cannot write: {error}", path.display()))?;
-            session.progress.say(&format!("{}: {} measurements to make", path.display(), found.lines().count()));
-        }
         let network = &inputs.roads.network;
         let mut out = results();
         match self.format {
@@ -94,7 +91,13 @@ impl Survey {
             Format::Csv => write!(out, "{}", table(&inputs, &found))?,
             Format::Geojson => write!(out, "{}", geojson(&inputs, &found))?,
         }
-        Ok(out.flush()?)
+        out.flush()?;
+        if let Some(path) = &self.sheet {
+            let text = self.sheet_text(path, &inputs, &found)?;
+            write_file(path, text)?;
+            session.progress.say(&format!("{}: {} measurements to make", path.display(), found.lines().count()));
+        }
+        Ok(())
     }
 
     fn find(&self, inputs: &RoutingInputs, pairs: Option<Vec<PlacePair>>, session: &Session) -> anyhow::Result<Found> {

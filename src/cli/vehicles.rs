@@ -11,8 +11,9 @@ use serde::Serialize;
 
 use super::Session;
 use crate::cli::arguments::vehicle_files::VehicleFiles;
+use crate::cli::output::file::write_file;
+use crate::cli::output::results;
 use crate::cli::output::table::Table;
-use crate::cli::output::{results, write_picture};
 
 /// Radii at which offtracking is shown, metres.
 const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];
@@ -84,7 +85,7 @@ impl Vehicles {
                 let fleet = vehicle_files.fleet()?;
                 let vehicle = fleet.catalogue.get(id)?;
                 if let Some(path) = svg {
-                    write_picture(path, &picture::vehicle(vehicle))?;
+                    write_file(path, picture::vehicle(vehicle))?;
                     session.progress.say(&format!("{}: the picture", path.display()));
                 }
                 show(vehicle, *format)

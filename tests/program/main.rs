@@ -44,6 +44,7 @@ mod survey;
 mod tasks;
 mod turns_program;
 mod update;
+mod uses;
 mod vehicle_pictures;
 mod verify_database;
 mod verify_mutations;

@@ -11,7 +11,7 @@ const FROM_TO: &str = "--from 0.0005,0 --to 0.0065,0";
 
 /// A straight road of 780 m at the equator, with side roads and 120 m of 5.4 m between roads of 7 m: a lane of 2.7 m is too narrow for
 /// AU-SEMI19.
-fn bottleneck() -> WorkFolder {
+pub(crate) fn bottleneck() -> WorkFolder {
     let at = |id, lon_e7, lat_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7 }, tags: Vec::new() };
     let main =
         [(1, 0), (2, 15_000), (3, 30_000), (4, 40_800), (5, 55_000), (6, 70_000)].map(|(id, lon)| at(id, lon, 0));

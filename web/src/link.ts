@@ -14,7 +14,7 @@ export interface Possible {
   changes: boolean;
 }
 
-const COLOURINGS: readonly ColourBy[] = ["margin", "reason", "evidence"];
+const COLOURINGS: readonly ColourBy[] = ["margin", "reason", "evidence", "strip"];
 
 export function write(state: State, first: State): string {
   const parts = new URLSearchParams();

@@ -3,7 +3,7 @@
 import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
 import type { Units } from "./units.ts";
 
-export type ColourBy = "margin" | "reason" | "evidence";
+export type ColourBy = "margin" | "reason" | "evidence" | "strip";
 
 export interface Camera {
   lon: number;

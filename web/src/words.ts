@@ -8,6 +8,8 @@ import { length, roadLength } from "./units.ts";
 
 export const VERDICTS: readonly VerdictName[] = ["safe", "unsafe", "forbidden", "unknown"];
 export const EVIDENCE: readonly Evidence[] = ["assumed", "from_lanes", "estimated", "tagged", "surveyed"];
+/** The strips from narrow to wide. */
+export const POLICIES: readonly Policy[] = ["lane", "direction", "carriageway"];
 export const CLASSES: readonly string[] = [
   "motorway",
   "trunk",
@@ -90,6 +92,14 @@ export const policyWords: Record<Policy, { name: string; meaning: string }> = {
   },
   direction: { name: "Own direction", meaning: "It may use all lanes of its own direction." },
   carriageway: { name: "Whole road", meaning: "It may use all that is paved: oncoming traffic has to wait." },
+};
+
+/** What the narrowest certified strip of a road means, one line for each; `none`: no strip is certified. */
+export const usesWords: Record<Policy | "none", string> = {
+  lane: "Certified in its own lane",
+  direction: "Certified with other lanes of its direction",
+  carriageway: "Certified on the whole road: meets oncoming traffic",
+  none: "Certified on none of these",
 };
 
 /** What somebody measures. */

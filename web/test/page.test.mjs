@@ -35,6 +35,37 @@ inPage("a certified lane that both directions share has a stripe, and the legend
   await page.waitForSelector(".shared-key", { state: "hidden" });
 });
 
+inPage("roads have the colour of the narrowest strip that is certified, and the legend its kilometres", "#v=AU-ATRIPLE53&policy=carriageway&by=strip&at=15,-30.2150,126.0500", async (page) => {
+  const { strips } = palettes.light;
+  const drawn = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe"] }).map(({ properties }) => [properties.edge_id, properties.uses]));
+  const kinds = new Set(drawn.map(([, uses]) => uses));
+  assert.ok(kinds.has("lane") && kinds.has("carriageway"), `${[...kinds]}`);
+  const colour = await page.evaluate(() => globalThis.netcert.map.getPaintProperty("edge-safe", "line-color"));
+  for (const uses of ["lane", "carriageway"]) {
+    assert.equal(colour[colour.indexOf(uses) + 1], strips[uses]);
+    // The API says of the same road under which policies it is safe.
+    const [id] = drawn.find(([, known]) => known === uses);
+    const { certificates } = await ask(`/api/edges/${id}`);
+    const safe = certificates.filter(({ vehicle, verdict }) => vehicle === "AU-ATRIPLE53" && verdict === "safe").map(({ policy }) => policy);
+    assert.equal(safe.includes("lane"), uses === "lane", id);
+  }
+  const told = await ask("/api/stats?policy=carriageway");
+  await page.waitForFunction(() => /km/.test(document.querySelector('[data-strip="none"] .legend-km')?.textContent ?? ""));
+  for (const uses of ["lane", "carriageway", null]) {
+    const km = told.strips.filter((row) => row.vehicle === "AU-ATRIPLE53" && row.uses === uses).reduce((sum, row) => sum + row.km, 0);
+    const shown = Number((await text(page, `[data-strip="${uses ?? "none"}"] .legend-km`)).replace(/[^0-9.]/g, ""));
+    assert.ok(Math.abs(shown - km) <= 0.5, `${uses}: ${shown} for ${km}`);
+  }
+  // Nothing was asked of the strip between: the legend has no line for it and says so.
+  assert.equal(await page.locator('[data-strip="direction"]').count(), 0);
+  assert.match(await text(page, ".strip-note"), /Own direction/);
+  // A road that is not certified in its lane shows on which strip it is.
+  await page.evaluate(() => globalThis.netcert.store.set({ policy: "lane" }));
+  await idle(page);
+  const lane = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-unsafe"] }).map(({ properties }) => properties.uses));
+  assert.ok(lane.includes("carriageway"), `${lane}`);
+});
+
 inPage("kilometres are those of the API", "#v=AU-ATRIPLE53", async (page) => {
   const { certificates } = await ask("/api/stats?policy=lane");
   const km = certificates.filter((row) => row.vehicle === "AU-ATRIPLE53" && row.verdict === "safe").reduce((sum, row) => sum + row.km, 0);

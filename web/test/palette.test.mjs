@@ -47,6 +47,21 @@ for (const [theme, palette] of Object.entries(palettes)) {
       }
     });
   }
+  test(`${theme}: strips have colours of their own, whoever looks`, () => {
+    const colours = [...Object.values(palette.strips), palette.noStrip, palette.forbidden, palette.unknown];
+    for (const [name, matrix] of Object.entries(simulations)) {
+      for (const own of [...Object.values(palette.strips), palette.noStrip]) {
+        for (const colour of colours.filter((other) => other !== own)) {
+          const apart = difference(own, colour, matrix);
+          assert.ok(apart > 20, `${own} and ${colour} under ${name}: ΔE ${apart.toFixed(1)}`);
+        }
+        for (const [ground, least] of [[palette.paper, 25], [palette.wood, 20], [palette.water, 20]]) {
+          const apart = difference(own, ground, simulations.normal);
+          assert.ok(apart > least, `${own} on ${ground}: ΔE ${apart.toFixed(1)}`);
+        }
+      }
+    }
+  });
   test(`${theme}: a route under conditions has a colour that no road and no other route has, whoever looks`, () => {
     for (const [name, matrix] of Object.entries(simulations)) {
       for (const colour of [...palette.room, ...palette.missing, palette.forbidden, palette.unknown, palette.conditionalGap]) {

@@ -20,6 +20,32 @@ pub struct StatsRow {
     pub length_m: f64,
 }
 
+/// The edges of one vehicle and class by the narrowest policy under which the database has them as safe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StripCount {
+    /// Vehicle id.
+    pub vehicle_id: String,
+    /// The class of road as in `highway`, with `_link` for links.
+    pub highway: String,
+    /// That policy. `None`: none of those that the database has for the vehicle.
+    pub uses: Option<Policy>,
+    /// Number of directed edges.
+    pub edges: u64,
+    /// Length of the edges together, metres.
+    pub length_m: f64,
+}
+
+/// The turns of one vehicle by the narrowest policy under which the database has them as safe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnStripCount {
+    /// Vehicle id.
+    pub vehicle_id: String,
+    /// That policy. `None`: none of those that the database has for the vehicle.
+    pub uses: Option<Policy>,
+    /// Number of turns.
+    pub turns: u64,
+}
+
 /// All counts of a database.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stats {
@@ -35,6 +61,10 @@ pub struct Stats {
     pub turns: Vec<TurnCount>,
     /// What edges that lack room would need, by vehicle and policy.
     pub needs: Vec<NeedCount>,
+    /// Edges by the narrowest strip that is certified, by vehicle and class, without empty counts.
+    pub strips: Vec<StripCount>,
+    /// Turns by the narrowest strip that is certified, by vehicle, without empty counts.
+    pub turn_strips: Vec<TurnStripCount>,
 }
 
 /// The edges of one vehicle and policy that lack room and would be safe with some more width.

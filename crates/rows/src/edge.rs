@@ -26,13 +26,15 @@ pub struct EdgeRow {
     pub certificate: CertificateRow,
     /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
     pub need_width_m: Option<f64>,
+    /// The narrowest policy under which the database has the edge as safe for the vehicle.
+    pub uses: Option<Policy>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
 impl EdgeRow {
     /// The columns of [`Self::cells`].
-    pub const COLUMNS: [Column; 25] = {
+    pub const COLUMNS: [Column; 26] = {
         let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
         [
@@ -61,6 +63,7 @@ impl EdgeRow {
             limiting_unit,
             limiting_side,
             ("need_width_m", Real),
+            ("uses", Text),
         ]
     };
 
@@ -95,6 +98,7 @@ impl EdgeRow {
             limiting_unit,
             limiting_side,
             Cell::Real(self.need_width_m),
+            Cell::Text(self.uses.map(Policy::name)),
         ]
     }
 }

@@ -31,7 +31,7 @@ pub use attestation::{Attestation, AttestedBy};
 pub use bounds::Bounds;
 pub use cell::{Cell, Column, ColumnKind};
 pub use certificate::CertificateRow;
-pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, TurnCount};
+pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, StripCount, TurnCount, TurnStripCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
 pub use key::{EdgeKey, RoadName, TurnKey};
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};

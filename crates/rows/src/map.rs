@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::osm::facts::{BackdropKind, Oneway, RoadClass, WidthSource};
+use crate::osm::facts::{BackdropKind, Oneway, Policy, RoadClass, WidthSource};
 use crate::osm::{BackdropShape, LonLat};
 use crate::verdict::Verdict;
 
@@ -35,6 +35,8 @@ pub struct MapNumbers {
     pub need_width_m: Option<f64>,
     /// Whether the lane of that policy is the whole road, which both directions share.
     pub shared: bool,
+    /// The narrowest policy under which the database has the edge as safe for the vehicle.
+    pub uses: Option<Policy>,
 }
 
 /// A thing behind the roads.
@@ -62,6 +64,8 @@ pub struct MapTurn {
     pub verdict: Verdict,
     /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
+    /// The narrowest policy under which the database has the turn as safe for the vehicle.
+    pub uses: Option<Policy>,
     /// The map's line over the last metres before the node and the first metres after it.
     pub line: Vec<LonLat>,
 }
@@ -79,6 +83,8 @@ pub struct MainRoad {
     pub verdict: Verdict,
     /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
+    /// The narrowest policy under which the database has the edge as safe for the vehicle.
+    pub uses: Option<Policy>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }

@@ -33,13 +33,15 @@ pub struct TurnRow {
     pub need_kerb_radius_m: Option<f64>,
     /// If no radius helps: the least width of the strip near the turn with which it would be safe, on both roads, metres.
     pub need_flare_m: Option<f64>,
+    /// The narrowest policy under which the database has the turn as safe for the vehicle.
+    pub uses: Option<Policy>,
     /// The map's line in driving order.
     pub line: Vec<LonLat>,
 }
 
 impl TurnRow {
     /// The columns of [`Self::cells`]. Tables of turns leave out `rsc_published_m`.
-    pub const COLUMNS: [Column; 25] = {
+    pub const COLUMNS: [Column; 26] = {
         let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
         [
@@ -68,6 +70,7 @@ impl TurnRow {
             limiting_side,
             ("need_kerb_radius_m", Real),
             ("need_flare_m", Real),
+            ("uses", Text),
         ]
     };
 
@@ -102,6 +105,7 @@ impl TurnRow {
             limiting_side,
             Cell::Real(self.need_kerb_radius_m),
             Cell::Real(self.need_flare_m),
+            Cell::Text(self.uses.map(Policy::name)),
         ]
     }
 }

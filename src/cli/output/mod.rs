@@ -1,5 +1,6 @@
 //! The two output streams: results go to standard output, everything else to standard error.
 
+pub(crate) mod file;
 pub(crate) mod relative;
 pub(crate) mod relative_stats;
 pub(crate) mod rows;
@@ -8,10 +9,8 @@ pub(crate) mod table;
 pub(crate) mod turn_rows;
 
 use std::io::{self, BufWriter, StdoutLock, Write};
-use std::path::Path;
 use std::time::Duration;
 
-use anyhow::anyhow;
 use indicatif::HumanDuration;
 
 /// Standard output with a buffer. The caller must flush it and handle the error.
@@ -27,11 +26,6 @@ pub(crate) fn tell(text: &str) {
 /// Prints an error. Every error message is complete in itself: what failed, where, and what the user can do.
 pub(crate) fn complain(error: &anyhow::Error) {
     tell(&format!("error: {error}"));
-}
-
-/// Writes a picture into a file.
-pub(crate) fn write_picture(path: &Path, svg: &str) -> anyhow::Result<()> {
-    std::fs::write(path, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))
 }
 
 /// Whether the reader of the results has closed the pipe, as in `netcert query … | head`.

@@ -31,6 +31,8 @@ pub(crate) struct Head {
     pub(crate) relative_to: Option<String>,
     /// Whether tables for people have a column with what would be enough. Other formats always have it.
     pub(crate) needs: bool,
+    /// Whether tables for people have a column with the narrowest policy. Other formats always have it.
+    pub(crate) uses: bool,
 }
 
 /// Writes rows in one format to standard output.
@@ -139,7 +141,7 @@ impl<'h> Sink<'h> {
             row.certificate.rsc_m.map_or(String::new(), metres),
             row.certificate.hinge_angle_deg().map_or(String::new(), degrees),
             verdict,
-            self.head.cells(row.need_width_m, relative),
+            self.head.cells(row.uses, row.need_width_m, relative),
             printable(&road.join(" ")),
         )
     }
@@ -158,21 +160,29 @@ impl Head {
 
     /// The headings of the columns that a table for people has on demand.
     pub(crate) fn heading(&self) -> String {
+        let uses = if self.uses { used("uses") } else { String::new() };
         let needs = if self.needs { need("needs") } else { String::new() };
-        needs + self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"])).as_str()
+        uses + needs.as_str()
+            + self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"])).as_str()
     }
 
-    /// The cells of these columns: what would be enough, metres, and the comparison.
-    pub(crate) fn cells(&self, need_m: Option<f64>, relative: Option<Relative>) -> String {
+    /// The cells of these columns: the narrowest policy, what would be enough, metres, and the comparison.
+    pub(crate) fn cells(&self, uses: Option<Policy>, need_m: Option<f64>, relative: Option<Relative>) -> String {
+        let uses = if self.uses { used(uses.map_or("-", Policy::name)) } else { String::new() };
         let metres = need_m.map_or_else(String::new, |m| format!("{m:.2} m"));
         let needs = if self.needs { need(&metres) } else { String::new() };
-        needs + relative.map_or_else(String::new, |relative| padded(&relative::words(relative))).as_str()
+        uses + needs.as_str()
+            + relative.map_or_else(String::new, |relative| padded(&relative::words(relative))).as_str()
     }
 
     /// The member of JSON that names the reference.
     pub(crate) fn member(&self) -> String {
         self.relative_to.as_ref().map_or_else(String::new, |id| format!("\"relative_to\":{},", json!(id)))
     }
+}
+
+fn used(cell: &str) -> String {
+    format!("{cell:<11}  ")
 }
 
 fn need(cell: &str) -> String {

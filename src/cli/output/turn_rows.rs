@@ -91,7 +91,7 @@ fn table(head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
             row.certificate.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
             row.certificate.hinge_angle_deg().map_or(String::new(), |d| format!("{d:.1}°")),
             verdict,
-            head.cells(row.need_kerb_radius_m, *relative),
+            head.cells(row.uses, row.need_kerb_radius_m, *relative),
             name(&row.turn.from_name),
             name(&row.turn.to_name),
         )?;

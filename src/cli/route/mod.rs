@@ -22,6 +22,7 @@ use crate::cli::arguments::position::place;
 use crate::cli::arguments::relative::RelativeArgs;
 use crate::cli::arguments::values::word;
 use crate::cli::database::routing::{RoutingArgs, RoutingInputs};
+use crate::cli::output::file::{check_writable, write_file};
 use crate::cli::output::{results, sheet, wrapped};
 use text::tell;
 
@@ -147,6 +148,7 @@ impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         self.relative.check_one_vehicle()?;
         self.inputs.check(&self.relative)?;
+        check_writable([&self.out, &self.svg, &self.decision, &self.sheet].map(Option::as_ref))?;
         let mut inputs = self.inputs.load(session, "route")?;
         let peer = self.peer(&inputs)?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
@@ -160,7 +162,6 @@ impl Route {
         // What a route uses is part of what its certificate rests on.
         inputs.origin.uses =
             answer.routes.first().map_or_else(Vec::new, |best| route::use_members(&inputs.roads.network, best));
-        self.write_files(&inputs, &answer, session)?;
         let (network, model) = (&inputs.roads.network, &inputs.driver.model);
         let mut out = results();
         match self.format {
@@ -185,7 +186,8 @@ impl Route {
                 self.tell_scope(&mut out, &inputs, &answer)?;
             }
         }
-        Ok(out.flush()?)
+        out.flush()?;
+        self.write_files(&inputs, &answer, session)
     }
 
     fn planner(&self, inputs: &RoutingInputs, measure: Measure, session: &Session) -> anyhow::Result<Planner> {
@@ -248,18 +250,18 @@ impl Route {
             let (model, options) = (&inputs.driver.model, &inputs.settings().stet);
             let conditions = conditional.map_or_else(Vec::new, |known| route::condition_members(network, known));
             let text = certificate::text_under(conditions, &inputs.origin, &given, model, &best.certificate, options)?;
-            write(path, text)?;
+            write_file(path, text)?;
             let under = if conditional.is_some() { ", which holds under its conditions" } else { "" };
             session.progress.say(&format!("{}: the whole certificate{under}", path.display()));
         }
         if let Some(path) = &self.svg {
             let best = best.ok_or_else(|| nothing(path))?;
             let conditions = conditional.map_or(0, |conditional| conditional.conditions.len());
-            write(path, picture::route(network, &inputs.driver.model.vehicle, best, conditions))?;
+            write_file(path, picture::route(network, &inputs.driver.model.vehicle, best, conditions))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         if let Some(path) = &self.decision {
-            write(path, self.decision(inputs, answer))?;
+            write_file(path, self.decision(inputs, answer))?;
             session.progress.say(&format!("{}: the decision sheet", path.display()));
         }
         if let Some(path) = &self.sheet {
@@ -267,7 +269,7 @@ impl Route {
                 bail!("{}: there are no conditions to write; run without --sheet", path.display());
             };
             let vehicle = &inputs.driver.model.vehicle;
-            write(path, sheet::text(path, self.sheet_units, network, vehicle, conditional)?)?;
+            write_file(path, sheet::text(path, self.sheet_units, network, vehicle, conditional)?)?;
             session.progress.say(&format!("{}: {} conditions to check", path.display(), conditional.conditions.len()));
         }
         Ok(())
@@ -296,11 +298,4 @@ impl Route {
 
 fn nothing(path: &Path) -> anyhow::Error {
     anyhow!("{}: there is no certified route to write; run without --out and --svg to see what blocks", path.display())
-}
-
-fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
-    match std::fs::write(path, bytes) {
-        Ok(()) => Ok(()),
-        Err(error) => bail!("{}: cannot write: {error}", path.display()),
-    }
 }

@@ -1,4 +1,4 @@
-//! Reacts to requests to stop: Ctrl-C, and SIGTERM on Unix.
+//! Reacts to requests to stop: Ctrl-C, and on Unix SIGTERM and the end of the terminal.
 
 use std::sync::{Mutex, Once, PoisonError, mpsc};
 
@@ -13,19 +13,31 @@ pub(crate) async fn stop() {
 #[cfg(unix)]
 fn listen() -> impl Future<Output = ()> {
     use tokio::signal::unix::{SignalKind, signal};
-    let signals = [SignalKind::interrupt(), SignalKind::terminate()].map(signal);
+    let signals = [SignalKind::interrupt(), SignalKind::terminate()].map(|kind| signal(kind).ok());
+    let hangup = if hangup_counts() { signal(SignalKind::hangup()).ok() } else { None };
     async move {
-        let [interrupted, terminated] = signals.map(|signal| async {
+        let [interrupt, terminate] = signals;
+        let [interrupted, terminated, hung_up] = [interrupt, terminate, hangup].map(|signal| async {
             match signal {
-                Ok(mut signal) => drop(signal.recv().await),
-                Err(_) => std::future::pending().await,
+                Some(mut signal) => drop(signal.recv().await),
+                None => std::future::pending().await,
             }
         });
         tokio::select! {
             () = interrupted => {}
             () = terminated => {}
+            () = hung_up => {}
         }
     }
+}
+
+/// Whether the end of the terminal ends the program. `nohup` asks the system to ignore that signal, and listening would undo it. Only Linux
+/// tells, as bit 0 of a number in hexadecimal.
+#[cfg(unix)]
+fn hangup_counts() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 1 == 0)
 }
 
 /// Listens for requests to stop once the future is polled.

@@ -137,6 +137,7 @@ fn matches_row(feature: &Feature, row: &EdgeRow) {
     assert_eq!((tag("name"), tag("ref")), (row.road.name.as_deref(), row.road.reference.as_deref()));
     assert_eq!(tag("rsc_m").map(|text| text.parse().unwrap()), row.certificate.rsc_m, "exactly as kept");
     assert_eq!(tag("width_source"), row.width_source.map(Named::name));
+    assert_eq!(tag("uses"), row.uses.map(Named::name));
     let need_m = tag("need_width_m").map(|shown| shown.parse::<f64>().unwrap());
     assert_eq!(need_m, row.need_width_m, "{}", row.edge.id);
     if let Some(width_m) = row.width_m {

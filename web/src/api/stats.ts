@@ -17,6 +17,8 @@ export interface Histogram {
 export interface VehicleStats {
   id: string;
   verdicts: Lengths;
+  /** Metres of road by the narrowest strip that is certified. */
+  strips: Record<Policy | "none", number>;
   classes: ({ highway: string } & Lengths)[];
   reasons: { verdict: VerdictName; reason: string; length_m: number }[];
   histogram: Histogram;
@@ -60,9 +62,12 @@ function one(rows: StatsRows, id: string): VehicleStats {
     known.length_m += metres;
     reasons.set(key, known);
   }
+  const strips = { lane: 0, direction: 0, carriageway: 0, none: 0 };
+  for (const row of rows.strips.filter(({ vehicle }) => vehicle === id)) strips[row.uses ?? "none"] += 1000 * row.km;
   return {
     id,
     verdicts,
+    strips,
     classes: [...classes].map(([highway, lengths]) => ({ highway, ...lengths })),
     reasons: [...reasons.values()],
     histogram: histogram(rows, id),

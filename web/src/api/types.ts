@@ -435,6 +435,7 @@ export interface RouteAnswer {
 
 /** Rows of `/api/stats`; lengths count once for each direction. */
 export interface StatsRows {
+  strips: { vehicle: string; highway: string; uses: Policy | null; edges: number; km: number }[];
   policy: Policy;
   roads: number;
   network: { highway: string; edges: number; km: number }[];

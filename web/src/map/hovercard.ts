@@ -2,8 +2,8 @@
 
 import { h, styled } from "../ui/dom.ts";
 import { length } from "../units.ts";
-import { changeWords, className, evidenceWords, leastMargin, margin, reasonWords, sideWords, title, verdictWords } from "../words.ts";
-import type { Changed, Evidence, VerdictName } from "../api/types.ts";
+import { changeWords, className, evidenceWords, leastMargin, margin, reasonWords, sideWords, title, usesWords, verdictWords } from "../words.ts";
+import type { Changed, Evidence, Policy, VerdictName } from "../api/types.ts";
 import type { Under } from "./view.ts";
 
 export class HoverCard {
@@ -37,6 +37,7 @@ function content({ kind, properties }: Under): Node[] {
   const name = { turn: "Turn", overview: "The worst of what lies here", edge: title(road) }[kind];
   const source = text("width_source") as Evidence | null;
   const need = properties["need_width_m"];
+  const uses = text("uses") as Policy | null;
   const parts = [
     road.highway ? className(road.highway) : null,
     kind !== "turn" ? `width: ${evidenceWords[source ?? "none"].toLowerCase()}` : null,
@@ -45,6 +46,7 @@ function content({ kind, properties }: Under): Node[] {
     h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
     h("div", { class: "hover-name" }, name),
     typeof need === "number" ? h("div", { class: "hover-more" }, `About ${length(need, "up")} would do, nowhere narrower along the road`) : null,
+    uses ? h("div", { class: "hover-more" }, usesWords[uses]) : null,
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
     kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
   ].filter((node) => node !== null);

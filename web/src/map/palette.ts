@@ -5,7 +5,7 @@
 // (`test/palette.test.mjs` simulates both). Verdicts also differ in line width and dashes, so that nothing depends on colour alone.
 // Categories have the colours of Okabe and Ito (Color Universal Design, 2008).
 
-import type { Evidence } from "../api/types.ts";
+import type { Evidence, Policy } from "../api/types.ts";
 
 export type Theme = "light" | "dark";
 
@@ -42,6 +42,9 @@ export interface Palette {
   soft: string;
   room: readonly [string, string, string, string];
   missing: readonly [string, string, string, string];
+  /** The narrowest strip that is certified, and roads where none is. Blue stays on its own side; what meets oncoming traffic is gold. */
+  strips: Readonly<Record<Policy, string>>;
+  noStrip: string;
   /** What stands in the way, what is tightest, what has become worse. */
   alarm: string;
   forbidden: string;
@@ -76,6 +79,8 @@ export const palettes: Record<Theme, Palette> = {
     soft: "#6a717a",
     room: ["#2f93d8", "#1a6fb8", "#0d4c90", "#07285a"],
     missing: ["#7d2600", "#ad4300", "#dd6a10", "#eb9d58"],
+    strips: { lane: "#0d4c90", direction: "#2f9fd8", carriageway: "#a97f00" },
+    noStrip: "#7d2600",
     alarm: "#d95f0e",
     forbidden: "#3b4048",
     unknown: "#8d949c",
@@ -103,6 +108,8 @@ export const palettes: Record<Theme, Palette> = {
     soft: "#949ba5",
     room: ["#2b78b8", "#4ba0e2", "#8bc6f6", "#dcefff"],
     missing: ["#ffb27d", "#f08434", "#b9601f", "#84481c"],
+    strips: { lane: "#dcefff", direction: "#4ba0e2", carriageway: "#d8b13c" },
+    noStrip: "#b9501f",
     alarm: "#f58a32",
     forbidden: "#8f96a0",
     unknown: "#69717b",

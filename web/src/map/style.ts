@@ -10,10 +10,10 @@ import type {
   LineLayerSpecification,
   StyleSpecification,
 } from "maplibre-gl";
-import type { Region, VerdictName } from "../api/types.ts";
+import type { Policy, Region, VerdictName } from "../api/types.ts";
 import { complete, type State } from "../state.ts";
 import { h } from "../ui/dom.ts";
-import { CLASSES, EVIDENCE } from "../words.ts";
+import { CLASSES, EVIDENCE, POLICIES } from "../words.ts";
 import { backdropSource, ground as behind, places } from "./backdrop.ts";
 import { labels } from "./labels.ts";
 import { EDGE_ZOOM, REAL_ZOOM, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
@@ -40,6 +40,11 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
     const colours = evidenceColours[theme];
     const pairs = EVIDENCE.flatMap((source) => [source, colours[source]]);
     return ["match", ["coalesce", ["get", "width_source"], "none"], ...pairs, colours.none] as unknown as Colour;
+  }
+  const decided = verdict === "safe" || verdict === "unsafe";
+  if (state.colourBy === "strip" && decided) {
+    const pairs = POLICIES.flatMap((policy: Policy) => [policy, palette.strips[policy]]);
+    return ["match", ["coalesce", ["get", "uses"], ""], ...pairs, palette.noStrip] as unknown as Colour;
   }
   if (verdict === "safe") return stepped(palette.room, roomSteps);
   if (state.colourBy === "reason" && verdict === "unsafe") {
@@ -148,7 +153,7 @@ function turn(verdict: VerdictName, state: State, palette: Palette, ground: Grou
     filter: filtered as ExpressionSpecification,
     layout: { "line-cap": "round", "line-join": "round" },
     paint: {
-      "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, ground.theme),
+      "line-color": colour(verdict, state.colourBy === "strip" ? state : { ...state, colourBy: "margin" }, palette, ground.theme),
       "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 15.5, verdict === "safe" ? 1.4 : 0.7, 20, verdict === "safe" ? 5 : 2.5],
       "line-opacity": (verdict === "safe" ? 0.95 : verdict === "unsafe" ? 0.6 : 0.35) * muted(state),
       ...(dash ? { "line-dasharray": dash } : {}),

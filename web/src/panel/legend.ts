@@ -1,14 +1,14 @@
 // Kilometres by verdict beside the lines of the map. The panel is legend, summary and filter in one.
 
 import type { VehicleStats } from "../api/stats.ts";
-import type { VerdictName } from "../api/types.ts";
-import type { Context } from "../context.ts";
-import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Step } from "../map/palette.ts";
+import type { Policy, VerdictName } from "../api/types.ts";
+import { vehicleOf, type Context } from "../context.ts";
+import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Step } from "../map/palette.ts";
 import type { ColourBy } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { Segmented } from "../ui/segmented.ts";
 import { length, roadLength, spoken } from "../units.ts";
-import { EVIDENCE, VERDICTS, evidenceWords, SHARED_LANE, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
+import { EVIDENCE, POLICIES, SHARED_LANE, VERDICTS, evidenceWords, percent, policyWords, reasonWords, routeWords, usesWords, verdictWords } from "../words.ts";
 
 export class Legend {
   readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
@@ -28,6 +28,7 @@ export class Legend {
         { value: "margin", name: "Margin", title: "Metres to spare or missing" },
         { value: "reason", name: "Reason", title: "What keeps the vehicle out" },
         { value: "evidence", name: "Evidence", title: "Where the road’s width comes from" },
+        { value: "strip", name: "Strip", title: "How much of the road the vehicle has to be given" },
       ],
       (colourBy) => context.store.set({ colourBy }),
     );
@@ -87,6 +88,7 @@ export class Legend {
       const colours = evidenceColours[theme];
       return [key([...EVIDENCE].map((source) => [evidenceWords[source], colours[source]] as const))];
     }
+    if (colourBy === "strip") return this.#strips(palette);
     const room = scale("Room to spare", roomSteps, palette.room);
     if (colourBy === "margin") return [scale("Room missing", missingSteps, palette.missing), room];
     const reasons = Object.entries(reasonColours).filter(([name]) => name.includes("/"));
@@ -94,6 +96,23 @@ export class Legend {
       key(reasons.map(([name, colour]) => [reasonWords(...(name.split("/") as [string, string])), colour] as const)),
       room,
     ];
+  }
+
+  /** One line for each strip, with its kilometres, and which strips the vehicle is certified for at all. */
+  #strips(palette: Palette): HTMLElement[] {
+    const certified = vehicleOf(this.context, this.context.store.state.vehicle)?.certified ?? [];
+    const row = (strip: Policy | "none", colour: string) =>
+      h(
+        "p",
+        { class: "strip-row", "data-strip": strip },
+        styled(h("i", { "aria-hidden": "true" }), { background: colour }),
+        h("span", {}, usesWords[strip]),
+        h("span", { class: "legend-km" }, this.#stats ? roadLength(this.#stats.strips[strip]) : ""),
+      );
+    const rows = certified.length === 0 ? [] : POLICIES.filter((policy) => certified.includes(policy)).map((policy) => row(policy, palette.strips[policy]));
+    const missing = POLICIES.filter((policy) => !certified.includes(policy)).map((policy) => `“${policyWords[policy].name}”`);
+    const note = missing.length === 0 ? [] : [h("p", { class: "strip-note" }, `Not asked for in this database: ${missing.join(" and ")}. netcert certify --corridor adds it.`)];
+    return [h("div", { class: "strips", role: "group", "aria-label": "Colours of strips" }, ...rows, row("none", palette.noStrip), ...note)];
   }
 }
 

@@ -16,7 +16,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
 use crate::osm::LonLat;
-use crate::osm::facts::WidthSource;
+use crate::osm::facts::{Policy, WidthSource};
 use crate::rows::EdgeNo;
 use crate::rows::Rings;
 use crate::words::Named;
@@ -84,7 +84,8 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
             None => out.write_all(b"\t\\N")?,
         }
     }
-    write!(out, "\t{}\t", row.width_source.map_or("\\N", WidthSource::name))?;
+    let words = [row.width_source.map(WidthSource::name), row.uses.map(Policy::name)].map(|word| word.unwrap_or("\\N"));
+    write!(out, "\t{}\t", words.join("\t"))?;
     ewkb(out, &row.line)?;
     out.write_all(b"\n")
 }

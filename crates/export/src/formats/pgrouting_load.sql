@@ -29,6 +29,7 @@ CREATE TABLE netcert.edge (
     hinge_margin_deg double precision,
     width_m double precision,
     width_source text,
+    uses text,
     geom geometry(LineString, 4326) NOT NULL,
     reverse_cost double precision NOT NULL DEFAULT -1
 );
@@ -51,7 +52,7 @@ CREATE TABLE netcert.step (
 );
 
 \copy netcert.header FROM 'header.copy'
-\copy netcert.edge (id, edge_id, way_id, source, target, cost, length_m, highway, name, ref, refusal, rsc_m, hinge_margin_deg, width_m, width_source, geom) FROM 'edge.copy'
+\copy netcert.edge (id, edge_id, way_id, source, target, cost, length_m, highway, name, ref, refusal, rsc_m, hinge_margin_deg, width_m, width_source, uses, geom) FROM 'edge.copy'
 \copy netcert.restriction (path) FROM 'restriction.copy'
 \copy netcert.step (source, target, arcs) FROM 'step.copy'
 

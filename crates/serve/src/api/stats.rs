@@ -8,7 +8,7 @@ use super::super::problem::Problem;
 use super::super::region::RegionState;
 use super::{SCOPE, answered};
 use crate::osm::facts::{Policy, WidthSource};
-use crate::rows::{RscBin, Stats, StatsRow, TurnCount};
+use crate::rows::{RscBin, Stats, StatsRow, StripCount, TurnCount, TurnStripCount};
 use crate::store::Database;
 use crate::words::{Named, verdict_words};
 
@@ -47,6 +47,8 @@ fn members(stats: &Stats, bins: &[RscBin], policy: Policy) -> Value {
         "widths": widths,
         "certificates": certificates.map(certificate).collect::<Vec<_>>(),
         "turns": turns.map(turn).collect::<Vec<_>>(),
+        "strips": stats.strips.iter().map(strip).collect::<Vec<_>>(),
+        "turn_strips": stats.turn_strips.iter().map(turn_strip).collect::<Vec<_>>(),
         "rsc_bin_m": f64::from(BIN_MM) / 1000.0,
         "rsc_histogram": bins.iter().map(bin).collect::<Vec<_>>(),
         "note": "A length is counted once for each direction.",
@@ -66,6 +68,17 @@ fn turn(row: &TurnCount) -> Value {
     let (verdict, reason) = verdict_words(row.verdict);
     let reason = (!reason.is_empty()).then_some(reason);
     json!({"vehicle": row.vehicle_id, "verdict": verdict, "reason": reason, "turns": row.turns})
+}
+
+fn strip(row: &StripCount) -> Value {
+    let uses = row.uses.map(Policy::name);
+    json!({
+        "vehicle": row.vehicle_id, "highway": row.highway, "uses": uses, "edges": row.edges, "km": km(row.length_m),
+    })
+}
+
+fn turn_strip(row: &TurnStripCount) -> Value {
+    json!({"vehicle": row.vehicle_id, "uses": row.uses.map(Policy::name), "turns": row.turns})
 }
 
 fn bin(bin: &RscBin) -> Value {

@@ -146,6 +146,7 @@ mod tests {
                 rsc_mm: None,
                 need_width_m: None,
                 shared: false,
+                uses: None,
             },
             line: points.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect(),
         }

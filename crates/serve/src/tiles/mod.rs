@@ -38,7 +38,7 @@ use super::memo::Recent;
 use super::problem::Problem;
 use super::region::RegionState;
 use crate::osm::LonLat;
-use crate::osm::facts::WidthSource;
+use crate::osm::facts::{Policy, WidthSource};
 use crate::rows::{MapEdge, MapNumbers, MapTurn, SetKey};
 use crate::stop::Stop;
 use crate::store::TurnsOf;
@@ -159,7 +159,7 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], tile: TileAddress) -> Vec<Vec<[
 }
 
 fn edge(layer: &mut TileLayer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
-    let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m, shared } = row.numbers;
+    let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m, shared, uses } = row.numbers;
     let (verdict, reason) = verdict_words(verdict);
     layer.feature(Some(u64::from(row.edge.index) + 1), lines, |tags| {
         tags.only("edge_id", TagValue::Text(&row.edge.id.to_string()));
@@ -175,6 +175,7 @@ fn edge(layer: &mut TileLayer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left:
         tags.number("rsc_m", rsc_mm.map(metres));
         tags.truth("left", left);
         tags.truth("shared", shared.then_some(true));
+        tags.text("uses", uses.map(Policy::name));
         tags.text("width_source", width_source.map(WidthSource::name));
         if z >= FIRST_IN_FULL {
             tags.add("way_id", TagValue::Whole(row.edge.way_id));
@@ -197,6 +198,7 @@ fn turn(layer: &mut TileLayer, row: &MapTurn, tile: TileAddress) {
         tags.add("verdict", TagValue::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
         tags.number("rsc_m", row.rsc_mm.map(metres));
+        tags.text("uses", row.uses.map(Policy::name));
     });
 }
 

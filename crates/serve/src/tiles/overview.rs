@@ -11,8 +11,8 @@ use super::encode::{TagValue, TileLayer};
 use super::grid::{self, BUFFER, TileAddress};
 use super::raster::{LineAttributes, Raster};
 use super::shape;
-use crate::osm::facts::WidthSource;
 use crate::osm::facts::highway;
+use crate::osm::facts::{Policy, WidthSource};
 use crate::rows::MainRoad;
 use crate::verdict::Verdict;
 use crate::words::{Named, verdict_words};
@@ -114,6 +114,7 @@ impl Overview {
             tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
             tags.number("rsc_m", steps(said.short).map(|steps| (steps * STEP_MM) as f64 / 1000.0));
             tags.text("width_source", source(said.doubt).map(WidthSource::name));
+            tags.text("uses", Policy::ALL.get(usize::from(said.strip)).copied().map(Policy::name));
         });
     }
 }
@@ -142,6 +143,7 @@ fn said(row: &MainRoad, rank: usize, verdict: usize) -> LineAttributes {
         severity: severity(row.verdict),
         short: steps.map_or(UNTOLD, |steps| (MOST_STEPS - steps) as u8),
         verdict: verdict as u8,
+        strip: row.uses.map_or(Policy::ALL.len(), |policy| policy as usize) as u8,
         doubt: row.width_source.map_or(WidthSource::ALL.len(), |own| {
             WidthSource::ALL.iter().rev().position(|source| *source == own).unwrap_or(WidthSource::ALL.len())
         }) as u8,
@@ -173,7 +175,15 @@ mod tests {
 
     fn row(verdict: Verdict, rsc_mm: Option<i64>, width_source: Option<WidthSource>) -> MainRoad {
         let line = [(0, 0), (10_000_000, 0)].map(|(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).to_vec();
-        MainRoad { class: RoadClass::Primary, link: false, width_source, verdict, rsc_mm, line }
+        MainRoad {
+            class: RoadClass::Primary,
+            link: false,
+            width_source,
+            verdict,
+            rsc_mm,
+            uses: Some(Policy::Direction),
+            line,
+        }
     }
 
     #[test]
@@ -189,6 +199,7 @@ mod tests {
         for own in WidthSource::ALL.iter().map(|&source| Some(source)).chain([None]) {
             let said = said(&row(Verdict::Safe, Some(0), own), 2, 0);
             assert_eq!((source(said.doubt), class_of(said)), (own, (2, false)));
+            assert_eq!(Policy::ALL[usize::from(said.strip)], Policy::Direction);
         }
         assert_eq!(steps(said(&row(Verdict::Unknown(UnknownReason::Width), Some(3), None), 0, 0).short), None);
     }

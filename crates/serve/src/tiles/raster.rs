@@ -30,12 +30,14 @@ pub(super) struct LineAttributes {
     pub(super) verdict: u8,
     /// How many ranks the source of the width is below the best source.
     pub(super) doubt: u8,
+    /// Index of the narrowest policy under which the line is certified; one beyond the last if there is none.
+    pub(super) strip: u8,
 }
 
 impl LineAttributes {
-    /// Merges the attributes of two lines of one class: the worse verdict with its margin, and the weaker source of width.
+    /// Merges the attributes of two lines of one class: the worse verdict with its margin, the weaker source of width, and the wider strip.
     fn with(self, other: Self) -> Self {
-        Self { doubt: self.doubt.max(other.doubt), ..self.max(other) }
+        Self { doubt: self.doubt.max(other.doubt), strip: self.strip.max(other.strip), ..self.max(other) }
     }
 }
 
@@ -148,7 +150,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn said(severity: u8, short: u8, doubt: u8) -> LineAttributes {
-        LineAttributes { class: 0, severity, short, verdict: severity, doubt }
+        LineAttributes { class: 0, severity, short, verdict: severity, doubt, strip: severity }
     }
 
     fn lines(all: &[(&[RasterPoint], LineAttributes)]) -> BTreeMap<LineAttributes, Vec<Vec<RasterPoint>>> {

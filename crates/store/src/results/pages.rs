@@ -15,7 +15,7 @@ use crate::database::Database;
 use crate::error::StoreError;
 use crate::results::predicate::{BoundSql, ColumnSql, Predicate};
 use crate::results::query::{self, Area, polygons};
-use crate::results::turns;
+use crate::results::{turns, uses};
 use crate::roads::junctions;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -247,6 +247,7 @@ fn edge_column(policy: Policy, name: &str) -> Option<ColumnSql> {
             own(format!("e.{name}"), false)
         }
         "rsc_published_m" | "need_width_m" => own(format!("c.{name}"), false),
+        "uses" => own(uses::word(uses::EDGES), false),
         _ => certificate_column(name),
     }
 }
@@ -265,6 +266,7 @@ fn turn_column(name: &str) -> Option<ColumnSql> {
         "to_name" => own("coalesce(b.name, b.ref)", false),
         "kind" | "angle_deg" | "kerb_radius_m" | "kerb_source" | "restriction" => own(&format!("t.{name}"), false),
         "need_kerb_radius_m" | "need_flare_m" => own(&format!("c.{name}"), false),
+        "uses" => own(&uses::word(uses::TURNS), false),
         _ => certificate_column(name),
     }
 }

@@ -18,7 +18,7 @@ use crate::columns::names::{corridor_no, of_kind, width_columns};
 use crate::columns::read::{centimetres, line, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::numbers;
+use crate::results::{numbers, uses};
 use crate::roads::key::{edge_key, road_name};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -51,6 +51,8 @@ pub struct QueryOptions {
     pub needs_at_most_m: Option<f64>,
     /// Only edges whose width comes from this source or a better one.
     pub min_width_source: Option<WidthSource>,
+    /// Only edges for which this is the narrowest policy under which they are safe.
+    pub uses: Option<Policy>,
 }
 
 impl QueryOptions {
@@ -66,6 +68,7 @@ impl QueryOptions {
             min_rsc_m: None,
             needs_at_most_m: None,
             min_width_source: None,
+            uses: None,
         }
     }
 }
@@ -143,10 +146,11 @@ pub(crate) fn select(policy: Policy) -> String {
     let [width, source] = width_columns(policy);
     format!(
         "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
-         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, c.need_cm, {columns} \
+         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, c.need_cm, {columns}, {uses} \
          FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
          WHERE c.vehicle_no = ? AND c.corridor_no = ?",
-        columns = numbers::COLUMNS
+        columns = numbers::COLUMNS,
+        uses = uses::number(uses::EDGES)
     )
 }
 
@@ -176,6 +180,9 @@ fn statement(
         let enough: Vec<_> =
             WidthSource::ALL.iter().filter(|&&s| s >= least).map(|s| format!("'{}'", s.name())).collect();
         sql += &format!(" AND e.{source} IN ({})", enough.join(","));
+    }
+    if let Some(strip) = options.uses {
+        sql += &format!(" AND {}", uses::is(uses::EDGES, strip));
     }
     if let Some(area) = area {
         let boxes: Vec<geo::Rect> = area.iter().filter_map(geo::Polygon::bounding_rect).collect();
@@ -208,6 +215,7 @@ pub(crate) fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         maxspeed_kmh: row.try_get(14)?,
         need_width_m: centimetres(row, 15)?,
         certificate: numbers::read(row, 16, || format!("edge {fid}"))?,
+        uses: uses::read(row, 23)?,
         line: line(row, 13, || format!("edge {fid}"))?,
     })
 }

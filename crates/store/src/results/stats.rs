@@ -12,7 +12,7 @@ use crate::columns::names::verdict_no;
 use crate::columns::read::{verdict, word, word_or_none};
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::turns;
+use crate::results::{turns, uses};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -50,11 +50,14 @@ impl Database {
                         ORDER BY vehicle_no, corridor_no, highway, verdict_no";
             let rows = sqlx::query(rows).fetch_all(&mut *c).await?;
             let needs = needs(c).await?;
+            let strips = uses::edges(c, "temp.brief").await?;
             sqlx::raw_sql("DROP TABLE temp.brief").execute(&mut *c).await?;
             let turns = turns::counts(c).await?;
+            let turn_strips = uses::turns(c).await?;
             let network = network.into_iter().map(|(class, edges, m)| (class, edges.unsigned_abs(), m)).collect();
             let certificates = rows.iter().map(stats_row).collect::<Sql<_>>()?;
-            Ok(Stats { roads: roads.unsigned_abs(), network, widths, certificates, turns, needs })
+            let roads = roads.unsigned_abs();
+            Ok(Stats { roads, network, widths, certificates, turns, needs, strips, turn_strips })
         })
     }
 }

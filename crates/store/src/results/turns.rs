@@ -29,6 +29,7 @@ use crate::results::complete::{Complete, Fault, check_complete};
 use crate::results::numbers;
 use crate::results::plans;
 use crate::results::query::{Area, polygons};
+use crate::results::uses;
 use crate::roads::junctions;
 use crate::roads::key::turn_key;
 
@@ -222,6 +223,8 @@ pub struct TurnQuery {
     pub min_rsc_m: Option<f64>,
     /// Only turns whose kerb radius would be enough with at most this much more, metres.
     pub needs_at_most_m: Option<f64>,
+    /// Only turns for which this is the narrowest policy under which they are safe.
+    pub uses: Option<Policy>,
 }
 
 impl TurnQuery {
@@ -229,7 +232,16 @@ impl TurnQuery {
     #[must_use]
     pub fn new(vehicle: &str, policy: Policy) -> Self {
         let vehicle = vehicle.to_owned();
-        Self { vehicle, policy, area: None, turn_id: None, verdict: None, min_rsc_m: None, needs_at_most_m: None }
+        Self {
+            vehicle,
+            policy,
+            area: None,
+            turn_id: None,
+            verdict: None,
+            min_rsc_m: None,
+            needs_at_most_m: None,
+            uses: None,
+        }
     }
 }
 
@@ -320,6 +332,7 @@ pub(crate) fn select() -> String {
                    (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid), c.need_kerb_cm, c.need_flare_cm, "
         .to_owned();
     sql += numbers::COLUMNS;
+    sql += &format!(", {}", uses::number(uses::TURNS));
     sql + " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
            CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid"
 }
@@ -336,6 +349,9 @@ pub(crate) fn statement(options: &TurnQuery) -> String {
     }
     if let Some(more_m) = options.needs_at_most_m {
         sql += &format!(" AND c.need_kerb_cm <= 100.0 * (t.kerb_radius_m + {more_m}) + 1e-6");
+    }
+    if let Some(strip) = options.uses {
+        sql += &format!(" AND {}", uses::is(uses::TURNS, strip));
     }
     if let Some(id) = options.turn_id {
         sql += &format!(" AND c.fid = (SELECT fid FROM turn WHERE turn_id = {id})");
@@ -357,6 +373,7 @@ pub(crate) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         need_kerb_radius_m: centimetres(row, 16)?,
         need_flare_m: centimetres(row, 17)?,
         certificate: numbers::read(row, 18, || format!("turn {fid}"))?,
+        uses: uses::read(row, 25)?,
         path_no: row.try_get(12)?,
         line: line(row, 13, || format!("turn {fid}"))?,
     })

@@ -15,6 +15,7 @@ use crate::columns::names::{corridor_no, width_columns};
 use crate::columns::read::{centimetres, line, verdict, word, word_or_none};
 use crate::database::Database;
 use crate::error::{StoreError, content};
+use crate::results::uses;
 use crate::roads::key::{edge_key, road_name, turn_key};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -98,13 +99,14 @@ impl Database {
     ) -> Result<Vec<MapEdge<'static>>, StoreError> {
         let ([width, source], shared) = (width_columns(set.policy), shared_column(set.policy));
         let mut sql = format!(
-            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, e.edge_id, e.way_id, \
-             e.from_node, e.to_node, e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, {uses}, e.edge_id, \
+             e.way_id, e.from_node, e.to_node, e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
              AND c.corridor_no = ? AND c.fid = t.id \
-             WHERE t.maxx >= ? AND t.minx <= ? AND t.maxy >= ? AND t.miny <= ?"
+             WHERE t.maxx >= ? AND t.minx <= ? AND t.maxy >= ? AND t.miny <= ?",
+            uses = uses::number(uses::EDGES)
         );
         if classes.len() < RoadClass::ALL.len() {
             let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
@@ -129,10 +131,12 @@ impl Database {
     pub fn map_numbers(&mut self, set: SetKey<'_>) -> Result<Vec<MapNumbers>, StoreError> {
         let ([width, source], shared) = (width_columns(set.policy), shared_column(set.policy));
         let sql = format!(
-            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared} FROM edge AS e \
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, {shared}, {uses} \
+             FROM edge AS e \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
-             AND c.corridor_no = ? AND c.fid = e.fid ORDER BY e.fid"
+             AND c.corridor_no = ? AND c.fid = e.fid ORDER BY e.fid",
+            uses = uses::number(uses::EDGES)
         );
         self.session.run(async |c| {
             let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
@@ -202,10 +206,10 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge<'static>> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapEdge {
         numbers: map_numbers(row)?,
-        edge: edge_key(row, 8)?,
-        oneway: word(row, 13)?,
-        road: road_name(row, 14)?.into(),
-        line: line(row, 17, || format!("edge {fid}"))?,
+        edge: edge_key(row, 9)?,
+        oneway: word(row, 14)?,
+        road: road_name(row, 15)?.into(),
+        line: line(row, 18, || format!("edge {fid}"))?,
     })
 }
 
@@ -226,6 +230,7 @@ fn map_numbers(row: &SqliteRow) -> Sql<MapNumbers> {
         rsc_mm: row.try_get(5)?,
         need_width_m: centimetres(row, 6)?,
         shared: row.try_get(7)?,
+        uses: uses::read(row, 8)?,
     })
 }
 
@@ -238,11 +243,12 @@ async fn turns(c: &mut SqliteConnection, set: SetKey<'_>, of: TurnsOf) -> Sql<Ve
     };
     let sql = format!(
         "SELECT t.fid, t.turn_id, a.edge_id, b.edge_id, coalesce(a.name, a.ref), coalesce(b.name, b.ref), t.kind, \
-         t.angle_deg, t.kerb_radius_m, t.restriction, c.verdict_no, c.rsc_mm, t.geom FROM turn AS t \
+         t.angle_deg, t.kerb_radius_m, t.restriction, c.verdict_no, c.rsc_mm, t.geom, {uses} FROM turn AS t \
          CROSS JOIN turn_certificate_compact AS c \
          ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
          AND c.corridor_no = ? AND c.fid = t.fid \
-         CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid WHERE {which}"
+         CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid WHERE {which}",
+        uses = uses::number(uses::TURNS)
     );
     let query = sqlx::query(AssertSqlSafe(sql)).bind(set.vehicle).bind(corridor_no(set.policy));
     let query = match of {
@@ -264,6 +270,7 @@ fn map_turn(row: &SqliteRow) -> Sql<MapTurn> {
         restriction: row.try_get(9)?,
         verdict: verdict(row, 10, || format!("turn {fid}"))?,
         rsc_mm: row.try_get(11)?,
+        uses: uses::read(row, 13)?,
         line: line(row, 12, || format!("turn {fid}"))?,
     })
 }

@@ -15,6 +15,7 @@ use crate::columns::names::{corridor_no, width_columns};
 use crate::columns::read::{line, verdict, word_or_none};
 use crate::database::Database;
 use crate::error::{StoreError, content};
+use crate::results::uses;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -27,11 +28,12 @@ impl Database {
         let [_, source] = width_columns(set.policy);
         let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
         let sql = format!(
-            "SELECT e.highway, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM edge AS e \
+            "SELECT e.highway, e.{source}, c.verdict_no, c.rsc_mm, e.geom, {} FROM edge AS e \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
              AND c.corridor_no = ? AND c.fid = e.fid \
              WHERE e.highway IN ({}) ORDER BY e.fid",
+            uses::number(uses::EDGES),
             words.join(",")
         );
         self.session.run(async |c| {
@@ -50,6 +52,7 @@ fn main_road(row: &SqliteRow) -> Sql<MainRoad> {
         width_source: word_or_none(row, 1)?,
         verdict: verdict(row, 2, || "a main road".to_owned())?,
         rsc_mm: row.try_get(3)?,
+        uses: uses::read(row, 5)?,
         line: line(row, 4, || "a main road".to_owned())?,
     })
 }
