@@ -157,6 +157,15 @@ def test_a_conditional_route_is_never_safe(demo):
     assert json.loads(route.certificate())["verdict"] == "conditional"
 
 
+def test_the_narrowest_certified_strip_is_a_column_and_a_filter(demo):
+    for rows in (demo.edges, demo.turns):
+        frame = rows(TRUCK).to_pandas()
+        # The file has certificates of the carriageway alone.
+        assert ((frame["verdict"] == "safe") == (frame["uses"] == "carriageway")).all()
+        assert len(rows(TRUCK, uses="carriageway")) == (frame["verdict"] == "safe").sum() > 0
+        assert len(rows(TRUCK, uses="lane")) == 0
+
+
 def test_what_a_region_lacks_is_named(demo, tmp_path):
     with pytest.raises(netcert.NotFound, match="netcert certify --vehicle EU-SEMI16.5"):
         demo.edges("EU-SEMI16.5")
@@ -164,7 +173,7 @@ def test_what_a_region_lacks_is_named(demo, tmp_path):
         demo.explain_edge(7, TRUCK)
     with pytest.raises(netcert.PlaceError, match="road that may be used"):
         demo.route(TUG, (0.0, 0.0), (1.0, 1.0))
-    for wrong in ({"verdict": "good"}, {"bbox": (0, 9, 1, 2)}, {"corridor": "road"}, {"min_width_source": "?"}):
+    for wrong in ({"verdict": "good"}, {"bbox": (0, 9, 1, 2)}, {"corridor": "road"}, {"min_width_source": "?"}, {"uses": "?"}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             demo.edges(TRUCK, **wrong)
     with pytest.raises(ValueError, match="is no place"):

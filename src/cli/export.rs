@@ -15,6 +15,7 @@ use crate::cli::arguments::values::{metres, word};
 use crate::cli::arguments::vehicle_args::{PolicyArgs, TimeArgs, VehicleArgs};
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::on_demand::{self, Coverage};
+use crate::cli::output::file::check_place;
 use crate::cli::output::{grouped, printable, results};
 use crate::cli::session::stop::when_stopped;
 
@@ -93,6 +94,10 @@ impl Export {
                 return Err(ExportError::OwnInput(self.out.clone()).into());
             }
         }
+        let to_stream = self.out.as_os_str() == "-";
+        if !to_stream {
+            check_place(&self.out)?;
+        }
         formats::check_reference(target, self.relative.relative_to.as_deref())?;
         anyhow::ensure!(
             self.geoparquet.is_none() || target.name() == "geoparquet",
@@ -101,7 +106,6 @@ impl Export {
         );
         self.relative.check(&path, &self.vehicle.id, self.policy.corridor)?;
         let source = self.source(session, &path)?;
-        let to_stream = self.out.as_os_str() == "-";
         let out = if to_stream { Out::Stream(Box::new(results())) } else { Out::Path(self.out.clone()) };
         let unfinished = Unfinished::default();
         let on_disk = unfinished.clone();

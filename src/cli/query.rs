@@ -51,9 +51,9 @@ Columns:
            row would be safe if its road were nowhere narrower. The width is an estimate, unless the
            vehicle was certified with --needs edges or all
 
-  uses     only where the vehicle is certified under several policies, or with --uses: the narrowest of
-           them under which the row is safe; `-` where none is. Certify more with netcert certify
-           --corridor; the verdict is always that of --corridor
+  uses     where the vehicle is certified under several policies, or with --uses: the narrowest
+           policy under which the row is safe; `-` where none is. `netcert certify --corridor`
+           adds policies; the verdict is always that of --corridor
 
 With --relative-to, two columns more, which say nothing of `safe`:
   relative_m    the RSC less that of the reference: at 0 or more, the vehicle needs no more room there;

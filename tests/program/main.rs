@@ -25,6 +25,7 @@ mod export_formats;
 mod facade;
 mod geopackage;
 mod gis;
+mod gpx;
 mod manoeuvres;
 mod named_tags;
 mod names;

@@ -64,19 +64,21 @@ fn a_check_without_patience_confirms_nothing_and_ends() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {
+fn ctrl_c_or_a_closed_terminal_ends_every_long_verb_within_a_second_with_a_line() {
     let place = WorkFolder::with_demo();
-    for line in [
-        "ingest {demo} --db other.gpkg --all-vehicles --threads 1",
-        "certify --vehicle AU-SEMI19 EU-SEMI16.5 AU-BDOUBLE26 --threads 1 --needs all",
-        "survey --vehicle EU-SEMI16.5 --limit 50 --threads 1",
-        "verify --db demo.gpkg --threads 1",
-        "serve --addr 127.0.0.1:0",
+    // Only on Linux does the end of the terminal count.
+    let hangup = if cfg!(target_os = "linux") { "-HUP" } else { "-INT" };
+    for (line, signal) in [
+        ("ingest {demo} --db other.gpkg --all-vehicles --threads 1", "-INT"),
+        ("certify --vehicle AU-SEMI19 EU-SEMI16.5 AU-BDOUBLE26 --threads 1 --needs all", hangup),
+        ("survey --vehicle EU-SEMI16.5 --limit 50 --threads 1", "-INT"),
+        ("verify --db demo.gpkg --threads 1", "-INT"),
+        ("serve --addr 127.0.0.1:0", hangup),
     ] {
         let mut run = place.command(line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(400));
         let told = Instant::now();
-        assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+        assert!(Command::new("kill").args([signal, &run.id().to_string()]).status().unwrap().success());
         let code = run.wait().unwrap().code();
         let took = told.elapsed();
         let mut err = String::new();
@@ -87,6 +89,21 @@ fn ctrl_c_ends_every_long_verb_within_a_second_with_a_line() {
         // A second, and room for a loaded machine.
         assert!(took < Duration::from_secs(4), "{line}: {took:?}");
     }
+}
+
+/// `nohup` asks the system to ignore the end of the terminal.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_under_nohup_outlives_its_terminal() {
+    let place = WorkFolder::with_demo();
+    let line = place.command("certify --vehicle AU-SEMI19 --corridor carriageway --threads 1");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]).arg(line.get_program()).args(line.get_args());
+    shell.current_dir(line.get_current_dir().unwrap()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut run = shell.spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(Command::new("kill").args(["-HUP", &run.id().to_string()]).status().unwrap().success());
+    assert!(run.wait().unwrap().success());
 }
 
 #[test]

@@ -11,6 +11,31 @@ const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
 const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.205563";
 
 #[test]
+fn what_cannot_be_written_is_told_before_the_work() {
+    let place = WorkFolder::with_wide_demo("AU-ATRIPLE53").file("old.svg", "older");
+    let before = place.read("demo.gpkg");
+    let told = |line: &str, words: &str| {
+        let run = place.netcert(line).fails().tells(words);
+        assert_eq!(run.out(), "", "nothing was searched");
+    };
+    // A vehicle that is not certified here would be certified first.
+    let route = format!("route --vehicle EU-SEMI16.5 {ROUND_A_CORNER}");
+    for option in ["--out", "--svg", "--sheet", "--decision"] {
+        told(&format!("{route} {option} gone/way.html"), "gone/way.html: cannot write: ");
+        told(&format!("{route} {option} gone/way.html"), "make the folder gone first");
+    }
+    told(&format!("{route} --out way --svg way"), "way: two results would go into this file");
+    told("survey --vehicle EU-SEMI16.5 --sheet gone/sheet.csv", "make the folder gone first");
+    told("corners --vehicle EU-SEMI16.5 --svg gone/corners.svg", "make the folder gone first");
+    told("export csv --vehicle EU-SEMI16.5 --out gone/csv", "gone/csv: cannot write: ");
+    assert_eq!(place.read("demo.gpkg"), before);
+    // Where there is nothing to write, the answer is told all the same, and the older file stays.
+    let line = format!("route --vehicle AU-ATRIPLE53 {ROUND_A_CORNER} --certified-only --svg old.svg");
+    place.netcert(&line).fails().shows("no certified route").tells("there is no certified route to write");
+    assert_eq!((place.read("old.svg"), place.files().len()), (b"older".to_vec(), 2));
+}
+
+#[test]
 fn routes_are_told_written_verified_or_explained() {
     let place = WorkFolder::with_wide_demo("AU-ATRIPLE53");
 

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::serve::http::Server;
 
-const FROM_TO: &str = "--from 0.0005,0 --to 0.0065,0";
+pub(crate) const FROM_TO: &str = "--from 0.0005,0 --to 0.0065,0";
 
 /// A straight road of 780 m at the equator, with side roads and 120 m of 5.4 m between roads of 7 m: a lane of 2.7 m is too narrow for
 /// AU-SEMI19.

@@ -159,7 +159,7 @@ impl Destination {
     pub fn name(&self, error: ExportError) -> ExportError {
         match (error, &self.kind) {
             (ExportError::Write(source), Kind::File { target, .. } | Kind::Folder { target, .. }) => {
-                ExportError::Io { path: target.clone(), source }
+                ExportError::Out { path: target.clone(), source }
             }
             (error, _) => error,
         }
@@ -207,7 +207,7 @@ impl Write for Sink {
 }
 
 fn at(path: &Path, source: io::Error) -> ExportError {
-    ExportError::Io { path: path.to_owned(), source }
+    ExportError::Out { path: path.to_owned(), source }
 }
 
 /// The error of locking an output. It is [`ExportError::Busy`] if another process holds the lock.

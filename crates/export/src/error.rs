@@ -1,5 +1,6 @@
 //! Errors of an export. Every message names the file and says what to do.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use crate::osm::pbf::ReadError;
@@ -19,9 +20,17 @@ pub enum ExportError {
     #[error("cannot write: {0}")]
     Write(#[from] std::io::Error),
     /// Writing a named file failed.
+    #[error("{path}: {source}{}", way_out(source))]
+    Out {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's error.
+        source: std::io::Error,
+    },
+    /// A file that the export is made from cannot be read.
     #[error("{path}: {source}")]
     Io {
-        /// The file or folder.
+        /// The file.
         path: PathBuf,
         /// The system's error.
         source: std::io::Error,
@@ -84,4 +93,16 @@ pub enum ExportError {
         /// What was found, and what to do.
         detail: String,
     },
+}
+
+/// What helps against an error of the file system.
+fn way_out(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "; name with --out a place where you may write",
+        ErrorKind::NotFound => "; make its folder first, or name another place with --out",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "; free some space, or name another place with --out; an earlier output is unchanged"
+        }
+        _ => "",
+    }
 }

@@ -34,6 +34,7 @@
 //! | `nearest_road` | the road beside a place, and why it may not be used |
 //! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
+//! | `gpx` | an answer as GPX |
 //! | `relative` | an answer beside a reference vehicle |
 //! | `survey` | which measurements would open most |
 //! | `through` | roads that are open at the ends of a route only |
@@ -61,6 +62,7 @@ mod conditions;
 mod database;
 mod drive;
 mod driver;
+mod gpx;
 mod graph;
 mod grounds;
 mod ladder;
@@ -95,6 +97,7 @@ pub use conditions::{Condition, ConditionAt, Conditional, SHEET_COLUMNS, sheet_c
 pub use database::NoDriver;
 pub use drive::{Drive, Join};
 pub use driver::Driver;
+pub use gpx::{GpxError, GpxFacts, gpx};
 pub use graph::{Access, BARRED, Graph};
 pub use ladder::{Ladder, UnlikeSets};
 pub use nearest_road::NearestRoad;

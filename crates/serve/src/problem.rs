@@ -113,6 +113,10 @@ impl From<StoreError> for Problem {
             StoreError::Io { source, .. } => {
                 unavailable("no-database", "The database cannot be read", source.to_string())
             }
+            StoreError::ReadOnly { detail, .. } => {
+                let detail = format!("{detail}; whoever runs the server can move it to where it may write");
+                unavailable("no-database", "The database cannot be written", detail)
+            }
             other => {
                 let detail = match &other {
                     StoreError::Damaged { detail, .. } => detail.clone(),

@@ -58,6 +58,16 @@ pub enum StoreError {
     /// The register of measurements changed while certificates were made, so they may not hold any more.
     #[error("{0}: measurements were added or removed meanwhile, so nothing was stored; run again")]
     RegisterChanged(PathBuf),
+    /// This user may not write the file, or make files beside it.
+    #[error(
+        "{path}: cannot be written: {detail}; name a file with --db in a folder in which you may write (a database can be copied there)"
+    )]
+    ReadOnly {
+        /// The database.
+        path: PathBuf,
+        /// The system's words.
+        detail: String,
+    },
     /// The disk is full.
     #[error(
         "{0}: the disk is full; free some space, or name another place with --db, and run again; an older file there is unchanged"
@@ -183,10 +193,21 @@ impl StoreError {
         // The low byte is the primary result code: https://www.sqlite.org/rescode.html
         match code.map(|code| code & 0xff) {
             Some(5 | 6) => Self::Busy(path),
+            Some(8) => Self::ReadOnly { path, detail: "file or folder is read-only".to_owned() },
             Some(11) => Self::Damaged { path, detail: source.to_string() },
             Some(13) => Self::Full(path),
             Some(26) => Self::NotSqlite(path),
             _ => Self::Sql { path, source },
+        }
+    }
+
+    /// The error of this crate for an error of the file system when something is made or opened to be written.
+    pub(super) fn writing(path: &Path, source: std::io::Error) -> Self {
+        match source.kind() {
+            std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
+                Self::ReadOnly { path: path.to_owned(), detail: source.to_string() }
+            }
+            _ => Self::io(path, source),
         }
     }
 

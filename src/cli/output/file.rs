@@ -21,6 +21,14 @@ pub(crate) fn check_writable<'p>(paths: impl IntoIterator<Item = Option<&'p Path
     Ok(())
 }
 
+/// Checks that a file or folder can be made at a place, beside what is there.
+///
+/// # Errors
+/// Nothing can be made there.
+pub(crate) fn check_place(path: &Path) -> anyhow::Result<()> {
+    beside(folder_of(path)).map(drop).map_err(|error| cannot(path, &error))
+}
+
 /// Writes a file whole. What was there before stays if that fails.
 ///
 /// # Errors
@@ -49,8 +57,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     // The file behind a link is replaced, not the link.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut beside = match beside(folder) {
+    let mut beside = match beside(folder_of(path)) {
         Ok(beside) => beside,
         // Whoever may write a file need not be allowed to make one beside it.
         Err(error) if error.kind() == ErrorKind::PermissionDenied => return std::fs::write(path, bytes),
@@ -62,6 +69,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     beside.persist(path)?;
     Ok(())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// A new file in a folder, with the rights of any new file.

@@ -13,7 +13,7 @@ use netcert::corridor::FileCorridor;
 use netcert::osm::facts::Policy;
 use netcert::picture::{self, CaseFields, DecisionBasis, SheetStyle};
 use netcert::region::Region;
-use netcert::route::{self, Answer, Measure, Peer, Planner, Position, Question, RungPrices};
+use netcert::route::{self, Answer, GpxFacts, Measure, Peer, Planner, Position, Question, RungPrices};
 use netcert::stop::Stop;
 use netcert::words::{Named, at_local_time};
 
@@ -137,6 +137,7 @@ enum Format {
     Table,
     Json,
     Geojson,
+    Gpx,
 }
 
 fn snap_metres(text: &str) -> Result<f64, String> {
@@ -148,6 +149,9 @@ impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         self.relative.check_one_vehicle()?;
         self.inputs.check(&self.relative)?;
+        if self.format == Format::Gpx && self.relative.relative_to.is_some() {
+            bail!("--relative-to: GPX has no place for a comparison; choose another --format");
+        }
         check_writable([&self.out, &self.svg, &self.decision, &self.sheet].map(Option::as_ref))?;
         let mut inputs = self.inputs.load(session, "route")?;
         let peer = self.peer(&inputs)?;
@@ -181,6 +185,11 @@ impl Route {
                 compared.iter().for_each(|compared| compared.add_to_geojson(&mut json));
                 writeln!(out, "{json}")?;
             }
+            Format::Gpx => {
+                let scope = self.scope(&inputs, &answer);
+                let facts = GpxFacts { scope: &scope, map_time: inputs.origin.replication_timestamp.as_deref() };
+                write!(out, "{}", route::gpx(network, model, &answer, facts)?)?;
+            }
             Format::Table => {
                 tell(&mut out, &inputs, &answer, compared.as_ref())?;
                 self.tell_scope(&mut out, &inputs, &answer)?;
@@ -205,18 +214,22 @@ impl Route {
             let wider = "`--at-most carriageway` would use more of the road where it must, the oncoming lane included, and say where.";
             writeln!(out, "{}\n", wrapped(wider, ""))?;
         }
-        let policy = policy.name();
+        writeln!(out, "{}", wrapped(&self.scope(inputs, answer), ""))
+    }
+
+    /// What the answer holds for.
+    fn scope(&self, inputs: &RoutingInputs, answer: &Answer) -> String {
+        let policy = inputs.settings().policy.name();
         let policy = match self.at_most.map(Policy::name) {
             Some(top) if answer.routes.is_empty() => format!("{top} policy"),
             Some(top) => format!("{policy} policy, where that is not enough up to {top}"),
             None => format!("{policy} policy"),
         };
         let time = at_local_time(inputs.at);
-        let scope = format!(
+        format!(
             "Within the stated model, widths and error bounds ({policy}, every turn's kerbs as the map or assumptions have \
              them); no permit. Times are by class of road and tagged limits.{time}"
-        );
-        writeln!(out, "{}", wrapped(&scope, ""))
+        )
     }
 
     /// Certified routes, or else a route under conditions, if one is wanted.

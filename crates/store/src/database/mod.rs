@@ -59,7 +59,15 @@ impl Database {
     }
 
     /// Opens a database for reading and changing.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and where this user may not change it ([`StoreError::ReadOnly`]).
     pub fn open_to_change(path: &Path) -> Result<Self, StoreError> {
+        check_header(path)?;
+        // SQLite opens what it may not write all the same, and needs a journal beside it.
+        std::fs::OpenOptions::new().append(true).open(path).map_err(|e| StoreError::writing(path, e))?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        tempfile::tempfile_in(folder).map_err(|e| StoreError::writing(path, e))?;
         let options = SqliteConnectOptions::new()
             .journal_mode(SqliteJournalMode::Delete)
             .synchronous(SqliteSynchronous::Full)

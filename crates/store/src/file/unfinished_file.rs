@@ -26,7 +26,7 @@ impl UnfinishedFile {
     /// Creates and locks the part of `target`.
     pub(crate) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
-        let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
+        let lock = output_lock::file(&path).map_err(|e| StoreError::writing(&path, e))?;
         remove_companions(&path)?;
         Ok(Self { target: target.to_owned(), path, leftover: lock.leftover, lock, placed: false })
     }
