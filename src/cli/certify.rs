@@ -30,6 +30,7 @@ Examples:
   netcert certify --vehicle EU-SEMI16.5 US-WB67     add two vehicles of the catalogue
   netcert certify --vehicle-file ours.toml          add all vehicles of a file
   netcert certify --corridor direction              use all lanes of the vehicle's direction
+  netcert certify --corridor direction,carriageway  the same, and on the whole carriageway, too
   netcert certify --db region.gpkg --max-shift 0    keep the steer axle on the centreline")]
 #[command(mut_arg(VehicleFiles::ID, |files| {
     files.help("A file with vehicles of your own. Without --vehicle, all of its vehicles are certified")
@@ -89,20 +90,24 @@ impl Certify {
         fleet: &Fleet,
         policy: Policy,
     ) -> anyhow::Result<Vec<(Policy, Vec<Vehicle>)>> {
+        let policies = self.how.policies();
         let named = if self.vehicle.is_empty() { &fleet.own } else { &self.vehicle };
         if !named.is_empty() {
             let ids: BTreeSet<&str> = named.iter().map(String::as_str).collect();
-            let vehicles = ids.into_iter().map(|id| vehicle(database, fleet, id)).collect::<Result<_, _>>()?;
-            return Ok(vec![(policy, vehicles)]);
+            let of_id = |id| vehicle(database, fleet, id);
+            let vehicles: Vec<Vehicle> = ids.into_iter().map(of_id).collect::<Result<_, _>>()?;
+            let policies = if policies.is_empty() { vec![policy] } else { policies };
+            return Ok(policies.into_iter().map(|policy| (policy, vehicles.clone())).collect());
         }
         let sets = database.certified()?;
         let mut work = Vec::new();
         for &each in Policy::ALL {
-            let wanted = sets.iter().filter(|set| set.policy == each || self.how.corridor == Some(each));
-            let ids: BTreeSet<&str> = match self.how.corridor {
-                Some(only) if only != each => continue,
-                _ => wanted.map(|set| set.vehicle_id.as_str()).collect(),
-            };
+            // A policy that is named is for all vehicles of the database.
+            if !policies.is_empty() && !policies.contains(&each) {
+                continue;
+            }
+            let wanted = sets.iter().filter(|set| set.policy == each || !policies.is_empty());
+            let ids: BTreeSet<&str> = wanted.map(|set| set.vehicle_id.as_str()).collect();
             if !ids.is_empty() {
                 let vehicles = ids.into_iter().map(|id| vehicle(database, fleet, id)).collect::<Result<_, _>>()?;
                 work.push((each, vehicles));

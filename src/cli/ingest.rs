@@ -6,6 +6,8 @@ use anyhow::bail;
 use clap::{Args, ValueHint};
 use netcert::osm::facts::{Countries, Rules, TrafficSide};
 use netcert::pipeline::{self, EDGES_AT_ONCE, Selection, TurnWork};
+use netcert::settings::Settings;
+use netcert::vehicle::Vehicle;
 use serde_json::json;
 
 use super::Session;
@@ -32,6 +34,7 @@ Examples:
   netcert ingest data/demo.osm.pbf
   netcert ingest victoria.osm.pbf --db roads.gpkg --vehicle AU-BDOUBLE26 AU-ATRIPLE53
   netcert ingest island.osm.pbf --country NZ --vehicle-file ours.toml
+  netcert ingest harbour.osm.pbf --corridor lane,direction,carriageway    on which strip each road is safe
   netcert ingest segment.parquet connector.parquet --db region.gpkg
 
 If the environment variable SOURCE_DATE_EPOCH is set (seconds since 1970), all time stamps have that
@@ -123,10 +126,35 @@ impl Ingest {
         if self.stats {
             session.progress.say(&work_of_turns(&summary.turns));
         }
-        let seconds = summary.stages.iter().map(|stage| stage.seconds).sum();
+        let mut seconds: f64 = summary.stages.iter().map(|stage| stage.seconds).sum();
+        for policy in self.how.policies().into_iter().skip(1) {
+            seconds += certify_also(session, &db, &fleet, &summary.vehicles, &Settings { policy, ..settings.clone() })?;
+        }
         session.progress.say(&done(&db, &summary.vehicles, seconds));
         Ok(())
     }
+}
+
+/// Certifies the vehicles of a new database under another policy, too. Returns how long it took, seconds.
+fn certify_also(
+    session: &Session,
+    db: &Path,
+    fleet: &Fleet,
+    ids: &[String],
+    settings: &Settings,
+) -> anyhow::Result<f64> {
+    let vehicles: Vec<&Vehicle> = ids.iter().map(|id| fleet.catalogue.get(id)).collect::<Result<_, _>>()?;
+    if vehicles.is_empty() {
+        return Ok(0.0);
+    }
+    let mut parameters = certify_options::parameters(settings)?;
+    parameters.insert("vehicles".into(), json!(ids));
+    let now = || session.clock.now();
+    let parameters = parameters.into();
+    let ask = pipeline::Certify { db, vehicles: &vehicles, settings, command: "certify", parameters, now: &now };
+    let summary = pipeline::certify(&ask, &session.progress)?;
+    session.progress.summary(&summary);
+    Ok(summary.stages.iter().map(|stage| stage.seconds).sum())
 }
 
 /// The counted work, for each turn that was laid out.

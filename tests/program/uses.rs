@@ -81,6 +81,37 @@ fn every_table_says_the_narrowest_policy_that_is_safe_whatever_its_own_policy_is
     place.netcert(&format!("query --db demo.gpkg --vehicle {VEHICLE}")).succeeds().shows("uses         road");
 }
 
+/// One command makes what three make.
+#[test]
+fn several_policies_are_certified_at_once() {
+    let place = on_all_strips();
+    let line =
+        format!("ingest road.osm.pbf --db once.gpkg --vehicle {VEHICLE} --corridor lane,direction,carriageway,lane");
+    place.netcert(&line).succeeds().tells("once.gpkg: whole after");
+    for policy in ["lane", "direction", "carriageway"] {
+        for turns in ["", "--turns"] {
+            let rows = |db: &str| {
+                let line =
+                    format!("query --quiet --format csv --db {db} --vehicle {VEHICLE} --corridor {policy} {turns}");
+                place.netcert(&line).succeeds().tells_nothing().out()
+            };
+            assert_eq!(rows("once.gpkg"), rows("demo.gpkg"), "{policy} {turns}");
+        }
+    }
+    // The first policy is that of questions without one.
+    place
+        .netcert(&format!("query --db once.gpkg --vehicle {VEHICLE}"))
+        .succeeds()
+        .tells("On a two-way road without a lane");
+    let again = format!("certify --db once.gpkg --vehicle {VEHICLE} --corridor carriageway,direction");
+    place
+        .netcert(&again)
+        .succeeds()
+        .tells("certified under the carriageway policy")
+        .tells("certified under the direction policy");
+    place.netcert("certify --db once.gpkg --corridor lane,road").ends_as_misuse().tells("road");
+}
+
 #[test]
 fn what_was_not_certified_counts_for_nothing() {
     let place = bottleneck();

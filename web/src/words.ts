@@ -94,12 +94,19 @@ export const policyWords: Record<Policy, { name: string; meaning: string }> = {
   carriageway: { name: "Whole road", meaning: "It may use all that is paved: oncoming traffic has to wait." },
 };
 
-/** What the narrowest certified strip of a road means, one line for each; `none`: no strip is certified. */
-export const usesWords: Record<Policy | "none", string> = {
+/** The narrowest certified strip in the legend; `none`: no strip is certified. */
+export const stripWords: Record<Policy | "none", string> = {
+  lane: "Own lane",
+  direction: "Own direction: other lanes, too",
+  carriageway: "Whole road: oncoming traffic waits",
+  none: "None, or forbidden, or unknown",
+};
+
+/** The narrowest certified strip of one road or turn. */
+export const usesWords: Record<Policy, string> = {
   lane: "Certified in its own lane",
   direction: "Certified with other lanes of its direction",
-  carriageway: "Certified on the whole road: meets oncoming traffic",
-  none: "Certified on none of these",
+  carriageway: "Certified on the whole road",
 };
 
 /** What somebody measures. */

@@ -29,6 +29,7 @@ const states = [
   ["the welcome", "", () => {}],
   ["the welcome on a phone", "", () => {}, narrow],
   ["the page itself, in the dark", "#v=AU-SEMI19", () => {}, dark],
+  ["roads by their strip, in the dark", "#v=AU-SEMI19&policy=carriageway&by=strip", (page) => page.waitForSelector(".strip-note"), dark],
   ["a road that is not certified", "#v=AU-ATRIPLE53", (page) => explained(page, "unsafe")],
   ["the form for a measurement, in the dark", "#v=AU-ATRIPLE53", async (page) => {
     await explained(page, "unsafe");

@@ -19,8 +19,11 @@ use crate::cli::arguments::values::{metres, word};
 pub(crate) struct CertifyOptions {
     /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
     /// lane].
-    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
-    pub(crate) corridor: Option<Policy>,
+    ///
+    /// Several are separated by commas, as in lane,direction,carriageway. There are then certificates for each of them, the first is
+    /// what other verbs ask for by default, and tables say in the column `uses` which is the narrowest that is safe.
+    #[arg(long, value_name = "POLICY,...", value_parser = word::<Policy>(), value_delimiter = ',')]
+    corridor: Vec<Policy>,
     /// The greatest distance between the smoothed centreline and the map's line, metres [default: 0.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     smoothing_tolerance: Option<f64>,
@@ -72,10 +75,21 @@ impl CertifyOptions {
         self.over(&Settings::default())
     }
 
-    /// The settings `base` with the given options in place.
+    /// The policies that were given, each once.
+    pub(crate) fn policies(&self) -> Vec<Policy> {
+        let mut policies: Vec<Policy> = Vec::new();
+        for &policy in &self.corridor {
+            if !policies.contains(&policy) {
+                policies.push(policy);
+            }
+        }
+        policies
+    }
+
+    /// The settings `base` with the given options in place, and of several policies the first.
     pub(crate) fn over(&self, base: &Settings) -> Settings {
         Settings {
-            policy: self.corridor.unwrap_or(base.policy),
+            policy: self.corridor.first().copied().unwrap_or(base.policy),
             corridor: Params {
                 tolerance_m: self.smoothing_tolerance.unwrap_or(base.corridor.tolerance_m),
                 map_tolerance_m: self.map_tolerance.unwrap_or(base.corridor.map_tolerance_m),

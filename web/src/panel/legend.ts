@@ -8,7 +8,7 @@ import type { ColourBy } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { Segmented } from "../ui/segmented.ts";
 import { length, roadLength, spoken } from "../units.ts";
-import { EVIDENCE, POLICIES, SHARED_LANE, VERDICTS, evidenceWords, percent, policyWords, reasonWords, routeWords, usesWords, verdictWords } from "../words.ts";
+import { EVIDENCE, POLICIES, SHARED_LANE, VERDICTS, evidenceWords, percent, policyWords, reasonWords, routeWords, stripWords, verdictWords } from "../words.ts";
 
 export class Legend {
   readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
@@ -106,13 +106,13 @@ export class Legend {
         "p",
         { class: "strip-row", "data-strip": strip },
         styled(h("i", { "aria-hidden": "true" }), { background: colour }),
-        h("span", {}, usesWords[strip]),
+        h("span", {}, stripWords[strip]),
         h("span", { class: "legend-km" }, this.#stats ? roadLength(this.#stats.strips[strip]) : ""),
       );
     const rows = certified.length === 0 ? [] : POLICIES.filter((policy) => certified.includes(policy)).map((policy) => row(policy, palette.strips[policy]));
     const missing = POLICIES.filter((policy) => !certified.includes(policy)).map((policy) => `“${policyWords[policy].name}”`);
     const note = missing.length === 0 ? [] : [h("p", { class: "strip-note" }, `Not asked for in this database: ${missing.join(" and ")}. netcert certify --corridor adds it.`)];
-    return [h("div", { class: "strips", role: "group", "aria-label": "Colours of strips" }, ...rows, row("none", palette.noStrip), ...note)];
+    return [h("div", { class: "strips", role: "group", "aria-label": "Narrowest certified strip" }, h("p", { class: "scale-name", "aria-hidden": "true" }, "Narrowest certified strip"), ...rows, row("none", palette.noStrip), ...note)];
   }
 }
 
