@@ -51,6 +51,7 @@ from .region import CertifiedSet, Region, open  # noqa: A004
 from .routes import Condition, NamedPlace, Obstacle, Part, Route, Routes, StripUse
 from .table import Table
 
+# Not `open`: it would hide the function of that name for who imports everything.
 __all__ = [
     "Catalogue",
     "Certificate",
@@ -83,7 +84,6 @@ __all__ = [
     "certify",
     "certify_many",
     "errors",
-    "open",
     "vehicles",
     "verify",
 ]

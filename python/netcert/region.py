@@ -5,14 +5,39 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
+
+from numpy.typing import NDArray
 
 from ._netcert import Explanation, RegionFile, Vehicle, Verification
+from .errors import RegionError
 from .filters import Corridor, EdgeFilters, TurnFilters, Verdict, WidthSource
 from .routes import Routes
 from .table import Table
 
-Place = tuple[float, float]
+
+class Point(Protocol):
+    """What has a longitude `x` and a latitude `y`, as points of Shapely have."""
+
+    @property
+    def x(self) -> float: ...
+    @property
+    def y(self) -> float: ...
+
+
+Place = Sequence[float] | NDArray[Any] | Point
+"""Longitude and latitude, degrees: a pair of numbers, or a point."""
+
+
+def _position(argument: str, place: Place) -> tuple[float, float]:
+    """Longitude and latitude of a place."""
+    try:
+        lon, lat = (place.x, place.y) if hasattr(place, "x") and hasattr(place, "y") else place
+        return float(lon), float(lat)
+    except (TypeError, ValueError):
+        expected = "expected a pair of longitude and latitude in degrees, or a point with `x` and `y`"
+        raise ValueError(f"{argument}: {place!r} is no place; {expected}") from None
+
 
 
 @dataclass(frozen=True)
@@ -34,17 +59,29 @@ class Region:
     """A region: its roads and the certificates of its vehicles.
 
     `corridor` names the width that a vehicle may use in every method: "lane", "direction" or "carriageway". Without it, the policy of
-    the database's `ingest` counts. Long calls release the interpreter's lock. Ctrl-C cancels routes, explanations and `verify`. After a fork, open the region
-    again in the new process.
+    the database's `ingest` counts. Long calls release the interpreter's lock. Ctrl-C cancels routes, explanations and `verify`.
+
+    A region can be pickled: the other process opens the same file. A process that was forked has to open it again.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self._file = RegionFile(path)
+        self._opened = RegionFile(path)
+        self._process = os.getpid()
+
+    @property
+    def _file(self) -> RegionFile:
+        # A forked process has none of its parent's threads, and would wait for them for ever.
+        if os.getpid() != self._process:
+            raise RegionError(f"{self.path}: this process was forked after the region was opened; open it again here")
+        return self._opened
+
+    def __reduce__(self) -> tuple[Any, tuple[str]]:
+        return Region, (os.path.abspath(self.path),)
 
     @property
     def path(self) -> str:
         """The file."""
-        return os.fspath(self._file.path)
+        return os.fspath(self._opened.path)
 
     @property
     def usual_corridor(self) -> str:
@@ -155,7 +192,7 @@ class Region:
     ) -> Routes:
         """Routes with one certificate over the whole way each, or what blocks them.
 
-        start, end, via  places as (longitude, latitude), degrees
+        start, end, via  places: longitude and latitude in degrees as a tuple, list or array, or a point with `x` and `y`
         snap_m           the greatest distance of a place from a road, metres
         alternatives     number of routes beside the best one
         tries            number of whole routes that may fail to certify
@@ -166,7 +203,8 @@ class Region:
 
         Raises PlaceError if a place is too far from a road, NotFound if the vehicle or its turns are not certified.
         """
-        places = [start, *via, end]
+        stops = [_position(f"via[{number}]", place) for number, place in enumerate(via)]
+        places = [_position("start", start), *stops, _position("end", end)]
         return Routes(
             self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions, at_most)
         )

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 if TYPE_CHECKING:
     import geopandas
@@ -210,7 +210,12 @@ class Routes:
     def __len__(self) -> int:
         return len(self._certified)
 
-    def __getitem__(self, number: int) -> Route:
+    @overload
+    def __getitem__(self, number: SupportsIndex) -> Route: ...
+    @overload
+    def __getitem__(self, number: slice) -> list[Route]: ...
+    def __getitem__(self, number: SupportsIndex | slice) -> Route | list[Route]:
+        """A route, or a list of those of a slice."""
         return self._certified[number]
 
     def __iter__(self) -> Iterator[Route]:

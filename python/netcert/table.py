@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     import geopandas
@@ -32,8 +32,17 @@ class Table:
     `geometry` holds lines of longitudes and latitudes (GeoArrow, EPSG:4326 with longitude first).
     """
 
-    def __init__(self, rows: RowBatches) -> None:
+    def __init__(self, rows: RowBatches | pyarrow.Table) -> None:
         self._rows = rows
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        # As Arrow's stream: pyarrow 26 pickles lists of fixed size without the names of their items, and GeoArrow has such lists.
+        import pyarrow
+
+        rows, sink = self.to_pyarrow(), pyarrow.BufferOutputStream()
+        with pyarrow.ipc.new_stream(sink, rows.schema) as stream:
+            stream.write_table(rows)
+        return _of_stream, (sink.getvalue().to_pybytes(),)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         return self._rows.__arrow_c_stream__(requested_schema)
@@ -47,15 +56,43 @@ class Table:
         return self._rows.column_names
 
     @property
+    def columns(self) -> list[str]:
+        """Names of the columns, as pandas and polars call them."""
+        return self.column_names
+
+    @property
+    def schema(self) -> pyarrow.Schema:
+        """Names and Arrow types of the columns."""
+        return self.to_pyarrow().schema
+
+    @property
     def nbytes(self) -> int:
         """Bytes of all columns."""
         return self._rows.nbytes
 
-    def to_pyarrow(self) -> pyarrow.Table:
-        """The rows as a pyarrow table. Nothing is copied."""
+    def head(self, rows: int = 5) -> Table:
+        """The first rows."""
+        return Table(self.to_pyarrow().slice(0, max(rows, 0)))
+
+    def to_pyarrow(self, *, geometry: Literal["geoarrow", "wkb"] = "geoarrow") -> pyarrow.Table:
+        """The rows as a pyarrow table.
+
+        geometry  how lines are kept: "geoarrow" as lists of longitudes and latitudes, and nothing is copied; "wkb" as binary for
+                  readers that know no GeoArrow, which needs GeoPandas
+        """
         import pyarrow
 
-        return pyarrow.table(self)
+        if geometry not in ("geoarrow", "wkb"):
+            raise ValueError(f'geometry: {geometry!r}; expected "geoarrow" or "wkb"')
+        table = pyarrow.table(self)
+        if geometry == "geoarrow" or "geometry" not in table.column_names:
+            return table
+        import geopandas
+
+        lines = geopandas.GeoDataFrame.from_arrow(table.select(["geometry"])).to_arrow(geometry_encoding="WKB")
+        binary = pyarrow.table(lines)
+        at = table.column_names.index("geometry")
+        return table.set_column(at, binary.schema.field("geometry"), binary.column("geometry"))
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a DataFrame without `geometry`. `to_geopandas` has the lines, too.
@@ -96,6 +133,13 @@ class Table:
     def _repr_html_(self) -> str:
         shown = _without_lines(self.to_pyarrow().slice(0, 10)).to_html(index=False, border=0)
         return f"{shown}<p>{len(self)} rows × {len(self.column_names)} columns</p>"
+
+
+def _of_stream(stream: bytes) -> Table:
+    """The table of a stream in Arrow's format."""
+    import pyarrow
+
+    return Table(pyarrow.ipc.open_stream(stream).read_all())
 
 
 def _without_lines(table: pyarrow.Table) -> pandas.DataFrame:

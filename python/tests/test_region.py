@@ -3,9 +3,14 @@
 import csv
 import io
 import json
+import multiprocessing
+import os
+import pickle
 
 import netcert
+import numpy
 import pytest
+import shapely
 
 TRUCK, TUG = "AU-SEMI19", "AGV-TUG4"
 
@@ -234,3 +239,56 @@ def test_the_checker_refutes_a_certificate_that_promises_too_much(demo_path, tmp
     found = netcert.open(path).verify(vehicles=[TRUCK])
     edges = [complaint for complaint in found.complaints if f"{TRUCK} edge " in complaint]
     assert not found.confirmed and len(edges) == 1 and edges[0].startswith("not confirmed: ")
+
+
+def test_places_are_pairs_arrays_or_points(demo):
+    _, (start, end) = safe_turn(demo)
+    told = demo.route(TUG, start, end).to_dict()
+    kinds = (list, numpy.array, shapely.Point, lambda place: shapely.Point(*place, 12.0))
+    for kind in kinds:
+        assert demo.route(TUG, kind(start), kind(end), via=[]).to_dict() == told
+    for wrong in ("8.6,49.4", (1.0,), (1.0, "east"), None, 7):
+        with pytest.raises(ValueError, match=r"start: .* is no place; expected a pair"):
+            demo.route(TUG, wrong, end)
+    with pytest.raises(ValueError, match=r"via\[1\]: "):
+        demo.route(TUG, start, end, via=[start, ()])
+
+
+def test_regions_and_tables_go_to_other_processes(demo):
+    again = pickle.loads(pickle.dumps(demo))
+    table = demo.edges(TUG)
+    assert again.edges(TUG).to_pyarrow().equals(table.to_pyarrow())
+    copy = pickle.loads(pickle.dumps(table))
+    assert copy.to_pyarrow().equals(table.to_pyarrow()) and len(copy) == len(table) and copy.columns == table.columns
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.apply(edges_of, (demo,)) == len(table)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_a_forked_process_is_told_to_open_the_region_again(demo):
+    with multiprocessing.get_context("fork").Pool(1, initializer=keep, initargs=(demo,)) as pool:
+        told = pool.apply_async(ask_kept).get(timeout=60)
+    assert "open it again" in told
+
+
+def edges_of(region):
+    return len(region.edges(TUG))
+
+
+def keep(region):
+    global kept
+    kept = region
+
+
+def ask_kept():
+    try:
+        kept.edges(TUG)
+    except netcert.RegionError as error:
+        return str(error)
+    return "no error"
+
+
+def test_routes_are_a_sequence(demo):
+    _, (start, end) = safe_turn(demo)
+    routes = demo.route(TUG, start, end)
+    assert routes[numpy.int64(0)] is routes[0] and routes[:1] == [routes[0]] and routes[-1:] == list(routes)[-1:]

@@ -11,6 +11,7 @@ import pyarrow
 import pyarrow.dataset
 import pyarrow.parquet
 import pytest
+import shapely
 from test_region import TUG, safe_turn
 
 # Doubles round whole numbers above it.
@@ -125,3 +126,37 @@ def test_what_a_notebook_and_a_map_show_is_whole(demo):
     # In a script a number would be rounded, but a text is not.
     drawn = rows.explore(tiles=None).get_root().render()
     assert set(map(int, re.findall(r'"turn_id": "(\d+)"', drawn))) == set(rows.to_pyarrow()["turn_id"].to_pylist())
+
+
+def test_a_table_has_what_frames_have(demo):
+    table = demo.edges(TUG)
+    assert table.columns == table.column_names == table.schema.names
+    first = table.head(3)
+    assert len(first) == 3 and first.to_pyarrow().equals(table.to_pyarrow().slice(0, 3))
+    assert len(table.head(0)) == len(table.head(-2)) == 0
+
+
+def test_lines_as_binary_are_the_same_lines(demo):
+    table = demo.edges(TUG)
+    binary = table.to_pyarrow(geometry="wkb")
+    assert binary.column_names == table.column_names
+    assert binary.drop_columns(["geometry"]).equals(table.to_pyarrow().drop_columns(["geometry"]))
+    lines = shapely.from_wkb(binary.column("geometry").combine_chunks().to_numpy(zero_copy_only=False))
+    assert list(lines) == list(table.to_geopandas().geometry)
+    assert geopandas.GeoDataFrame.from_arrow(binary).crs.to_epsg() == 4326
+    with pytest.raises(ValueError, match="geometry: 'text'"):
+        table.to_pyarrow(geometry="text")
+
+
+def test_polars_and_duckdb_take_a_table_as_it_is(demo):
+    table = demo.edges(TUG)
+    frame = polars.DataFrame(table)
+    assert frame.columns == table.columns and frame["edge_id"].to_list() == table.to_pyarrow()["edge_id"].to_pylist()
+    [(count,)] = duckdb.sql("SELECT count(*) FROM frame").fetchall()
+    assert count == len(table)
+
+
+def test_importing_everything_hides_no_builtin():
+    named = {}
+    exec("from netcert import *", named)
+    assert "open" not in named and "certify" in named
