@@ -109,7 +109,7 @@ impl Catalogue {
     }
 
     /// At most three similar ids. First come those whose id or name contains the typed text, then those that differ
-    /// from it in at most a third of its letters. Case, blanks and punctuation are ignored.
+    /// from it in at most a third of its letters. Case, blanks and punctuation are ignored. A word for any lorry stands for the usual ones.
     fn nearest(&self, id: &str) -> Vec<String> {
         let wanted = letters(id);
         let typed: Vec<char> = wanted.chars().collect();
@@ -124,9 +124,17 @@ impl Catalogue {
             })
             .collect();
         scored.sort_by_key(|&(distance, _)| distance);
+        if scored.is_empty() && ANY_LORRY.contains(&wanted.as_str()) {
+            return USUAL_LORRIES.iter().filter(|id| self.find(id).is_some()).map(|&id| id.to_owned()).collect();
+        }
         scored.into_iter().take(3).map(|(_, id)| id.to_owned()).collect()
     }
 }
+
+/// What people type for a lorry of no certain kind, as [`letters`] has it.
+const ANY_LORRY: [&str; 8] = ["truck", "trucks", "lorries", "hgv", "artic", "tractor", "semis", "vehicle"];
+/// The commonest lorry of the regions of the catalogue.
+const USUAL_LORRIES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "AU-SEMI19", "CA-SEMI23"];
 
 /// The characters of an id or a name that count in a comparison.
 fn letters(text: &str) -> String {

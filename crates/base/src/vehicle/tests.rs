@@ -286,6 +286,7 @@ fn an_unknown_id_is_answered_with_the_nearest() {
     assert!(said("wb67").contains("did you mean US-WB67, US-WB67D"), "{}", said("wb67"));
     assert!(said("bdouble").contains("AU-BDOUBLE26"), "{}", said("bdouble"));
     assert!(said("Rocky Mountain").contains("did you mean US-WB92D, CA-RMD31?"), "{}", said("Rocky Mountain"));
+    assert!(said("Truck").contains("did you mean EU-SEMI16.5, US-WB67, AU-SEMI19, CA-SEMI23?"), "{}", said("Truck"));
     assert!(!said("zeppelin").contains("did you mean"), "{}", said("zeppelin"));
 }
 
