@@ -1,4 +1,4 @@
-"""The pages on Python and Spark, typed line by line from top to bottom.
+"""The pages on vehicle files, Python and Spark, typed line by line from top to bottom.
 
 Blocks ```sh are typed into a shell, except lines that install something. Blocks ```python are examples with their answers.
 """
@@ -20,7 +20,7 @@ def blocks(page):
     return re.findall(r"^```(sh|python)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("page", ["python.md", "spark.md", "dataset.md"])
+@pytest.mark.parametrize("page", ["vehicle.md", "python.md", "spark.md", "dataset.md"])
 def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     if page == "spark.md":
         pytest.importorskip("pyspark", reason="pip install pyspark")
