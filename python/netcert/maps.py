@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .table import Table
 
 # What a reader wants to know of a road or turn, as far as the table has it.
-_TOLD = ["name", "ref", "from_name", "to_name", "highway", "verdict", "reason", "rsc_m", "width_m", "need_width_m", "edge_id", "turn_id"]
+_TOLD = ["name", "ref", "from_name", "to_name", "highway", "verdict", "reason", "rsc_m", "width_m", "need_width_m", "uses", "edge_id", "turn_id"]
 
 
 def table(rows: Table, **options: Any) -> folium.Map:

@@ -32,6 +32,8 @@ Place = Sequence[float] | NDArray[Any] | Point
 def _position(argument: str, place: Place) -> tuple[float, float]:
     """Longitude and latitude of a place."""
     try:
+        if isinstance(place, str | bytes | set | frozenset):
+            raise TypeError
         lon, lat = (place.x, place.y) if hasattr(place, "x") and hasattr(place, "y") else place
         return float(lon), float(lat)
     except (TypeError, ValueError):
@@ -67,6 +69,8 @@ class Region:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._opened = RegionFile(path)
         self._process = os.getpid()
+        # Another process may work in another folder.
+        self._whole_path = os.path.abspath(path)
 
     @property
     def _file(self) -> RegionFile:
@@ -76,7 +80,7 @@ class Region:
         return self._opened
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
-        return Region, (os.path.abspath(self.path),)
+        return Region, (self._whole_path,)
 
     @property
     def path(self) -> str:

@@ -152,7 +152,8 @@ def test_polars_and_duckdb_take_a_table_as_it_is(demo):
     table = demo.edges(TUG)
     frame = polars.DataFrame(table)
     assert frame.columns == table.columns and frame["edge_id"].to_list() == table.to_pyarrow()["edge_id"].to_pylist()
-    [(count,)] = duckdb.sql("SELECT count(*) FROM frame").fetchall()
+    stream = pyarrow.RecordBatchReader.from_stream(table)
+    [(count,)] = duckdb.sql("SELECT count(*) FROM stream").fetchall()
     assert count == len(table)
 
 

@@ -17,6 +17,7 @@ use crate::cli::arguments::certify_options::{self, CertifyOptions};
 use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::database::DatabaseArgs;
 use crate::cli::database::fleet::{self, Fleet};
+use crate::cli::session::stop::say_when_stopped;
 
 /// Certify vehicles in an existing database, again or for the first time.
 ///
@@ -61,7 +62,11 @@ impl Certify {
                 path.display()
             );
         }
+        let mut begun = false;
         for (policy, vehicles) in work {
+            if std::mem::replace(&mut begun, true) {
+                say_when_stopped("; the certificates of the policies before are stored");
+            }
             let settings = Settings { policy, ..settings.clone() };
             let names: Vec<&str> = vehicles.iter().map(|vehicle| vehicle.id.as_str()).collect();
             let mut parameters = certify_options::parameters(&settings)?;

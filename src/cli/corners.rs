@@ -68,7 +68,7 @@ impl Corners {
         if self.svg.is_some() && vehicles.len() > 1 {
             bail!("--svg draws one vehicle; name that vehicle alone with --vehicle");
         }
-        check_writable([self.svg.as_ref()])?;
+        check_writable([self.svg.as_ref()], None)?;
         let mut tables = Vec::new();
         for vehicle in vehicles {
             let model = Model::new(vehicle)?;

@@ -71,7 +71,7 @@ pub(crate) struct Corridor {
 
 impl Corridor {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        check_writable([self.out.as_ref(), self.svg.as_ref()])?;
+        check_writable([self.out.as_ref(), self.svg.as_ref()], Some(&self.file))?;
         let fleet = self.vehicle_files.fleet()?;
         let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
         let given = read(&self.file)?;

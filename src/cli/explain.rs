@@ -72,8 +72,8 @@ enum Format {
 
 impl Explain {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        check_writable([self.svg.as_ref()])?;
         let path = self.db.path()?;
+        check_writable([self.svg.as_ref()], Some(&path))?;
         let mut database = Database::open(&path)?;
         let policy = certify_options::policy_of(&mut database, self.policy.corridor)?;
         let vehicle = self.vehicle.definition(&mut database)?;

@@ -7,7 +7,6 @@ use clap::{Args, ValueHint};
 use netcert::osm::facts::{Countries, Rules, TrafficSide};
 use netcert::pipeline::{self, EDGES_AT_ONCE, Selection, TurnWork};
 use netcert::settings::Settings;
-use netcert::vehicle::Vehicle;
 use serde_json::json;
 
 use super::Session;
@@ -16,6 +15,7 @@ use crate::cli::arguments::values::country_code;
 use crate::cli::arguments::vehicle_files::VehicleFiles;
 use crate::cli::database::fleet::Fleet;
 use crate::cli::output::{grouped, human};
+use crate::cli::session::stop::say_when_stopped;
 
 /// Read an OpenStreetMap extract or Overture's files, certify the roads, and write a GeoPackage.
 ///
@@ -53,6 +53,7 @@ pub(crate) struct Ingest {
     #[command(flatten)]
     roads: Roads,
     /// How many directed edges to certify at a time. Fewer take less memory, more take less time; certificates are the same.
+    /// Of several policies this is for the first.
     #[arg(long, value_name = "N", help_heading = "Memory", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
     edges_at_once: u64,
     /// Print how much work the turns took, too: paths scored, sweeps and distances for each turn. These numbers are the same on every machine.
@@ -128,6 +129,9 @@ impl Ingest {
         }
         let mut seconds: f64 = summary.stages.iter().map(|stage| stage.seconds).sum();
         for policy in self.how.policies().into_iter().skip(1) {
+            say_when_stopped(
+                "; the certificates of the policies before are stored, and `netcert certify --corridor` makes the others",
+            );
             seconds += certify_also(session, &db, &fleet, &summary.vehicles, &Settings { policy, ..settings.clone() })?;
         }
         session.progress.say(&done(&db, &summary.vehicles, seconds));
@@ -135,7 +139,7 @@ impl Ingest {
     }
 }
 
-/// Certifies the vehicles of a new database under another policy, too. Returns how long it took, seconds.
+/// Certifies the vehicles of a new database under another policy, too, vehicle by vehicle. Returns how long it took, seconds.
 fn certify_also(
     session: &Session,
     db: &Path,
@@ -143,18 +147,19 @@ fn certify_also(
     ids: &[String],
     settings: &Settings,
 ) -> anyhow::Result<f64> {
-    let vehicles: Vec<&Vehicle> = ids.iter().map(|id| fleet.catalogue.get(id)).collect::<Result<_, _>>()?;
-    if vehicles.is_empty() {
-        return Ok(0.0);
-    }
-    let mut parameters = certify_options::parameters(settings)?;
-    parameters.insert("vehicles".into(), json!(ids));
     let now = || session.clock.now();
-    let parameters = parameters.into();
-    let ask = pipeline::Certify { db, vehicles: &vehicles, settings, command: "certify", parameters, now: &now };
-    let summary = pipeline::certify(&ask, &session.progress)?;
-    session.progress.summary(&summary);
-    Ok(summary.stages.iter().map(|stage| stage.seconds).sum())
+    let mut seconds = 0.0;
+    // One at a time: all certificates of a run are in memory.
+    for id in ids {
+        let mut parameters = certify_options::parameters(settings)?;
+        parameters.insert("vehicles".into(), json!([id]));
+        let (vehicles, parameters) = ([fleet.catalogue.get(id)?], parameters.into());
+        let ask = pipeline::Certify { db, vehicles: &vehicles, settings, command: "certify", parameters, now: &now };
+        let summary = pipeline::certify(&ask, &session.progress)?;
+        session.progress.summary(&summary);
+        seconds += summary.stages.iter().map(|stage| stage.seconds).sum::<f64>();
+    }
+    Ok(seconds)
 }
 
 /// The counted work, for each turn that was laid out.

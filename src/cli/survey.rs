@@ -76,7 +76,9 @@ enum Format {
 
 impl Survey {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        check_writable([self.sheet.as_ref()])?;
+        let db = self.inputs.db_path()?;
+        check_writable([self.sheet.as_ref()], Some(&db))?;
+        self.sheet.as_deref().map(sheet::Kind::of).transpose()?;
         let pairs = self.pairs.as_deref().map(read_pairs).transpose()?;
         if self.inputs.has_time() {
             bail!("--at: a survey looks for what lacks room at all times; leave the time out");
@@ -85,19 +87,20 @@ impl Survey {
         let found = self.find(&inputs, pairs, session)?;
         let network = &inputs.roads.network;
         let mut out = results();
-        match self.format {
-            Format::Text => tell(&mut out, &inputs, &found)?,
-            Format::Json => writeln!(out, "{:#}", found.json(network, &inputs.driver))?,
-            Format::Csv => write!(out, "{}", table(&inputs, &found))?,
-            Format::Geojson => write!(out, "{}", geojson(&inputs, &found))?,
-        }
-        out.flush()?;
+        let told = match self.format {
+            Format::Text => tell(&mut out, &inputs, &found),
+            Format::Json => writeln!(out, "{:#}", found.json(network, &inputs.driver)),
+            Format::Csv => write!(out, "{}", table(&inputs, &found)),
+            Format::Geojson => write!(out, "{}", geojson(&inputs, &found)),
+        };
+        // Whoever reads only a part of the answer gets the file all the same.
+        let told = told.and_then(|()| out.flush());
         if let Some(path) = &self.sheet {
             let text = self.sheet_text(path, &inputs, &found)?;
             write_file(path, text)?;
             session.progress.say(&format!("{}: {} measurements to make", path.display(), found.lines().count()));
         }
-        Ok(())
+        Ok(told?)
     }
 
     fn find(&self, inputs: &RoutingInputs, pairs: Option<Vec<PlacePair>>, session: &Session) -> anyhow::Result<Found> {

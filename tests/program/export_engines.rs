@@ -233,7 +233,7 @@ fn pgrouting_tables_name_every_edge_and_the_script_beside_them() {
     assert_eq!(edges.lines().count(), network.edges.len());
     for (i, line) in edges.lines().enumerate() {
         let fields: Vec<&str> = line.split('\t').collect();
-        assert_eq!((fields.len(), fields[0]), (16, (i + 1).to_string().as_str()), "{line}");
+        assert_eq!((fields.len(), fields[0]), (17, (i + 1).to_string().as_str()), "{line}");
         assert_eq!(fields[5] == "-1", !safe.contains(&EdgeNo::at(i)), "{line}");
         assert_eq!(fields[5] == "-1", fields[10] != "\\N", "{line}");
     }

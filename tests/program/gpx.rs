@@ -57,6 +57,8 @@ fn a_certified_way_is_a_track_with_the_places_where_it_leaves_its_lane() {
     );
     assert_eq!(read["license"], "https://opendatacommons.org/licenses/odbl/1-0/");
     assert_eq!(names(&read["tracks"]), ["AU-SEMI19: certified way"]);
+    let desc = read["tracks"][0]["desc"].as_str().unwrap();
+    assert!(desc.contains("widest strip: carriageway") && desc.contains("no permit"), "{desc}");
     // Every point of the certified line lies within the tolerance of the track, which has far fewer.
     let whole = positions(&told["features"][0]["geometry"]["coordinates"]);
     let track = positions(&read["tracks"][0]["line"]);
@@ -110,6 +112,7 @@ fn a_way_under_conditions_says_in_its_name_that_it_is_not_certified() {
     let place = written(place, &line);
     let Some(read) = judged(&place, "way.gpx") else { return };
     assert_eq!(names(&read["tracks"]), ["AU-ATRIPLE53: way under conditions, NOT certified"]);
+    assert!(read["desc"].as_str().unwrap().starts_with("No way between these places is certified"), "{read}");
     let all = names(&read["waypoints"]);
     for (number, condition) in (1..).zip(conditions) {
         let at = all.iter().position(|name| *name == format!("Check {number}")).unwrap();

@@ -122,6 +122,10 @@ fn what_was_not_certified_counts_for_nothing() {
     };
     check(&cells(&query(""), "uses"), &edges);
     check(&cells(&query("--turns"), "uses"), &turns);
+    for turns in ["", "--turns"] {
+        let line = format!("query --db demo.gpkg --vehicle {VEHICLE} --uses direction {turns}");
+        place.netcert(&line).fails().tells("under the direction policy").tells("netcert certify");
+    }
     let table = place.netcert(&format!("query --db demo.gpkg --vehicle {VEHICLE}")).succeeds().out();
     assert!(!table.lines().next().unwrap().contains("uses"), "one policy needs no column: {table}");
     let stats = place.netcert("stats --db demo.gpkg").succeeds().out();
@@ -136,6 +140,17 @@ fn sums_count_each_road_once() {
     place.netcert("stats --db demo.gpkg").succeeds().shows("The narrowest of the certified policies").shows("not safe");
     let server = Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0");
     let told = server.json("/api/stats");
+    let layers = server.json("/ogc/collections");
+    let id = |kind: &str| -> String {
+        let all = layers["collections"].as_array().unwrap().iter().map(|one| one["id"].as_str().unwrap().to_owned());
+        all.into_iter().find(|id| id.starts_with(kind) && id.ends_with("lane")).unwrap()
+    };
+    for (kind, all) in [("edges", &edges), ("turns", &turns)] {
+        let filter = "uses%3D%27carriageway%27";
+        let found = server.get(&format!("/ogc/collections/{}/items?limit=1000&filter={filter}", id(kind))).json();
+        let count = all.values().filter(|known| **known == Some("carriageway")).count();
+        assert_eq!(found["features"].as_array().unwrap().len(), count, "{kind}");
+    }
     for word in [Some("lane"), Some("direction"), Some("carriageway"), None] {
         let sum = |rows: &Value, member: &str| -> u64 {
             let own = rows.as_array().unwrap().iter().filter(|row| row["uses"].as_str() == word);

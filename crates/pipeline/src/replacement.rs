@@ -41,6 +41,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let started = (ask.now)();
     let clock = Instant::now();
     reporter.begin("load", 0);
+    Database::check_changeable(ask.db)?;
     let mut db = Database::open_to_change(ask.db)?;
     let network = db.load_network()?;
     reporter.end();

@@ -1,4 +1,4 @@
-//! Writes answers as GPX 1.1 for navigation devices: each way as a track, and as waypoints the places that were asked for, where the best way
+//! Writes answers as GPX 1.1 for navigation devices: each way as a track, and as waypoints the places that were asked for, where a way
 //! begins to use more than its own lane, what its conditions are, and what stands in the way.
 //!
 //! <https://www.topografix.com/GPX/1/1/>
@@ -9,16 +9,15 @@ use geo::{LineString, Simplify as _};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 
-use super::conditions::Conditional;
 use super::plan::Answer;
-use super::route::Route;
+use super::route::{LimitedStretch, Route};
 use super::strip_use::StripUse;
 use super::title::{place, title};
 use crate::corridor::FrameError;
 use crate::network::Network;
 use crate::osm::rounded;
 use crate::stet::Model;
-use crate::words::{Named as _, verdict_words};
+use crate::words::Named as _;
 
 /// Points of a track that lie this close to the line between others are left out, metres. Devices keep some thousand points.
 const TOLERANCE_M: f64 = 0.25;
@@ -61,7 +60,10 @@ struct Track {
 /// # Errors
 /// Positions cannot be converted from a route's frame.
 pub fn gpx(network: &Network, model: &Model, answer: &Answer, facts: GpxFacts<'_>) -> Result<String, GpxError> {
-    let (waypoints, tracks) = (waypoints(network, model, answer)?, tracks(model, answer)?);
+    let (waypoints, tracks) = (waypoints(network, model, answer)?, tracks(network, model, answer, facts)?);
+    let none =
+        if answer.routes.is_empty() { "No way between these places is certified for this vehicle. " } else { "" };
+    let about = format!("{none}{}", facts.scope);
     let mut out = Writer::new_with_indent(Vec::new(), b' ', 1);
     out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let root = out.create_element("gpx").with_attributes([
@@ -70,7 +72,7 @@ pub fn gpx(network: &Network, model: &Model, answer: &Answer, facts: GpxFacts<'_
         ("xmlns", "http://www.topografix.com/GPX/1/1"),
     ]);
     root.write_inner_content(|out| {
-        metadata(out, model, facts)?;
+        metadata(out, model, &about, facts)?;
         waypoints.iter().try_for_each(|waypoint| waypoint.write(out))?;
         tracks.iter().try_for_each(|track| track.write(out))
     })?;
@@ -79,10 +81,10 @@ pub fn gpx(network: &Network, model: &Model, answer: &Answer, facts: GpxFacts<'_
     Ok(text)
 }
 
-fn metadata(out: &mut Writer<Vec<u8>>, model: &Model, facts: GpxFacts<'_>) -> io::Result<()> {
+fn metadata(out: &mut Writer<Vec<u8>>, model: &Model, about: &str, facts: GpxFacts<'_>) -> io::Result<()> {
     out.create_element("metadata").write_inner_content(|out| {
         element(out, "name", &format!("netcert: {} {}", model.vehicle.id, model.vehicle.name))?;
-        element(out, "desc", facts.scope)?;
+        element(out, "desc", about)?;
         let rights = out.create_element("copyright").with_attribute(("author", "OpenStreetMap contributors"));
         rights.write_inner_content(|out| element(out, "license", "https://opendatacommons.org/licenses/odbl/1-0/"))?;
         facts.map_time.map_or(Ok(()), |time| element(out, "time", time))
@@ -146,11 +148,13 @@ fn waypoints(network: &Network, model: &Model, answer: &Answer) -> Result<Vec<Wa
     });
     let mut all: Vec<Waypoint> = asked.collect();
     let conditional = answer.conditional.as_ref();
-    if let Some(best) = answer.routes.first().or(conditional.map(|conditional| &conditional.route)) {
-        for used in &best.uses {
+    let ways: Vec<&Route> = answer.routes.iter().chain(conditional.map(|conditional| &conditional.route)).collect();
+    for (number, way) in (1..).zip(&ways) {
+        let which = if ways.len() > 1 { format!("Way {number} uses") } else { "Uses".to_owned() };
+        for used in &way.uses {
             all.push(Waypoint {
-                at: at(best, used.from_m)?,
-                name: format!("Uses {}", used.words(network)),
+                at: at(way, used.from_m)?,
+                name: format!("{which} {}", used.words(network)),
                 text: beyond(used),
             });
         }
@@ -187,22 +191,47 @@ fn beyond(used: &StripUse) -> String {
     )
 }
 
-/// The ways as tracks. A name says whether the way is certified.
-fn tracks(model: &Model, answer: &Answer) -> Result<Vec<Track>, FrameError> {
+/// The ways as tracks. A name says whether the way is certified, and the text what that holds for: devices show no more of a file.
+fn tracks(network: &Network, model: &Model, answer: &Answer, facts: GpxFacts<'_>) -> Result<Vec<Track>, FrameError> {
     let id = &model.vehicle.id;
+    let whole = |route: &Route, first: String| {
+        let limited = limited(network, model, route);
+        format!(
+            "{first}{:.1} km; widest strip: {}. {limited}{}",
+            route.length_m / 1000.0,
+            route.rung().name(),
+            facts.scope
+        )
+    };
     let certified = answer.routes.iter().enumerate().map(|(i, route)| {
-        let (verdict, _) = verdict_words(route.certificate.result.verdict());
-        let text = format!("{verdict}, {:.1} km; widest strip: {}", route.length_m / 1000.0, route.rung().name());
         let which = if i == 0 { "certified way".to_owned() } else { format!("certified way {}", i + 1) };
-        (format!("{id}: {which}"), text, route)
+        (format!("{id}: {which}"), whole(route, "certified, ".to_owned()), route)
     });
-    let conditional = answer.conditional.as_ref().map(|Conditional { route, conditions, .. }| {
-        let (count, km) = (conditions.len(), route.length_m / 1000.0);
-        let text = format!("certified only if what the waypoints Check 1 to {count} say is so on site; {km:.1} km");
-        (format!("{id}: way under conditions, NOT certified"), text, route)
+    let conditional = answer.conditional.as_ref().map(|known| {
+        let words = (1..)
+            .zip(&known.conditions)
+            .map(|(number, condition)| format!("{number}. {}: {}", condition.title(network), condition.words()));
+        let more = if known.suffices { "" } else { "Even then the way may ask for more. " };
+        let first =
+            format!("Certified only if all of this is so on site: {}. {more}", words.collect::<Vec<_>>().join("; "));
+        (format!("{id}: way under conditions, NOT certified"), whole(&known.route, first), &known.route)
     });
     let track = |(name, text, route)| Ok(Track { name, text, line: line(route)? });
     certified.chain(conditional).map(track).collect()
+}
+
+/// Where the way is open at its ends only, or at some times only, as sentences with an end.
+fn limited(network: &Network, model: &Model, route: &Route) -> String {
+    let all = [
+        ("Open to a destination there only", route.destination_only(network, &model.vehicle)),
+        ("Closed at some times", route.only_at_times(network, &model.vehicle)),
+    ];
+    let words = |(what, stretches): (&str, Vec<LimitedStretch>)| {
+        let each = stretches.iter().map(|stretch| format!("{} ({})", stretch.title, stretch.tag));
+        let each: Vec<String> = each.collect();
+        if each.is_empty() { String::new() } else { format!("{what}: {}. ", each.join(", ")) }
+    };
+    all.into_iter().map(words).collect()
 }
 
 /// The planned path of the steer axle, degrees.

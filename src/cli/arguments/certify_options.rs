@@ -20,8 +20,8 @@ pub(crate) struct CertifyOptions {
     /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
     /// lane].
     ///
-    /// Several are separated by commas, as in lane,direction,carriageway. There are then certificates for each of them, the first is
-    /// what other verbs ask for by default, and tables say in the column `uses` which is the narrowest that is safe.
+    /// Several are separated by commas, as in lane,direction,carriageway. There are then certificates for each of them, and tables say in the
+    /// column `uses` which is the narrowest that is safe. Of `ingest`, the first is what other verbs ask for by default.
     #[arg(long, value_name = "POLICY,...", value_parser = word::<Policy>(), value_delimiter = ',')]
     corridor: Vec<Policy>,
     /// The greatest distance between the smoothed centreline and the map's line, metres [default: 0.5].

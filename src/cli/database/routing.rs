@@ -49,6 +49,11 @@ pub(crate) struct RoutingInputs {
 }
 
 impl RoutingArgs {
+    /// The database.
+    pub(crate) fn db_path(&self) -> anyhow::Result<PathBuf> {
+        self.db.path()
+    }
+
     /// Whether a time is given.
     pub(crate) fn has_time(&self) -> bool {
         self.time.at.is_some()

@@ -46,6 +46,16 @@ impl From<PageUnits> for Units {
     }
 }
 
+/// Checks that a file's name asks for a form that there is in these units.
+pub(crate) fn check(path: &Path, units: PageUnits) -> anyhow::Result<()> {
+    match Kind::of(path)? {
+        Kind::Table | Kind::Geojson if units == PageUnits::Feet => {
+            bail!("{}: a table for `netcert evidence add` is in metres; a page (.html) may be in feet", path.display())
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The sheet in the form that the file's name asks for.
 pub(crate) fn text(
     path: &Path,
@@ -54,11 +64,9 @@ pub(crate) fn text(
     vehicle: &Vehicle,
     conditional: &Conditional,
 ) -> anyhow::Result<String> {
+    check(path, units)?;
     let units = Units::from(units);
     Ok(match Kind::of(path)? {
-        Kind::Table | Kind::Geojson if units == Units::Feet => {
-            bail!("{}: a table for `netcert evidence add` is in metres; a page (.html) may be in feet", path.display())
-        }
         Kind::Table => sheet_csv(network, conditional),
         Kind::Geojson => sheet_geojson(network, vehicle, conditional),
         Kind::Page => picture::sheet(network, vehicle, conditional, units, SheetStyle::Within),

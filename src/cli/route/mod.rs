@@ -13,7 +13,7 @@ use netcert::corridor::FileCorridor;
 use netcert::osm::facts::Policy;
 use netcert::picture::{self, CaseFields, DecisionBasis, SheetStyle};
 use netcert::region::Region;
-use netcert::route::{self, Answer, GpxFacts, Measure, Peer, Planner, Position, Question, RungPrices};
+use netcert::route::{self, Answer, Comparison, GpxFacts, Measure, Peer, Planner, Position, Question, RungPrices};
 use netcert::stop::Stop;
 use netcert::words::{Named, at_local_time};
 
@@ -42,6 +42,7 @@ Examples:
   netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --out certificate.json
   netcert verify certificate.json
   netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --at-most carriageway
+  netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --format gpx > way.gpx
   netcert route --vehicle US-WB67 --from 8.67,49.40 --to 8.70,49.42 --sheet conditions.html
   netcert route --vehicle US-WB67 --from 8.67,49.40 --to 8.70,49.42 --decision decision.html --case 2026-117
   netcert route --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --from 144.29,-36.74 --to 144.33,-36.80
@@ -152,7 +153,9 @@ impl Route {
         if self.format == Format::Gpx && self.relative.relative_to.is_some() {
             bail!("--relative-to: GPX has no place for a comparison; choose another --format");
         }
-        check_writable([&self.out, &self.svg, &self.decision, &self.sheet].map(Option::as_ref))?;
+        let files = [&self.out, &self.svg, &self.decision, &self.sheet].map(Option::as_ref);
+        check_writable(files, Some(&self.inputs.db_path()?))?;
+        self.sheet.as_deref().map(|path| sheet::check(path, self.sheet_units)).transpose()?;
         let mut inputs = self.inputs.load(session, "route")?;
         let peer = self.peer(&inputs)?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
@@ -166,11 +169,19 @@ impl Route {
         // What a route uses is part of what its certificate rests on.
         inputs.origin.uses =
             answer.routes.first().map_or_else(Vec::new, |best| route::use_members(&inputs.roads.network, best));
+        let told = self.tell(&inputs, &answer, compared.as_ref());
+        // Whoever reads only a part of the answer gets the files all the same.
+        self.write_files(&inputs, &answer, session)?;
+        told
+    }
+
+    /// Writes the answer to standard output.
+    fn tell(&self, inputs: &RoutingInputs, answer: &Answer, compared: Option<&Comparison>) -> anyhow::Result<()> {
         let (network, model) = (&inputs.roads.network, &inputs.driver.model);
         let mut out = results();
         match self.format {
             Format::Json => {
-                let mut json = route::json(network, model, &answer);
+                let mut json = route::json(network, model, answer);
                 if let Some(time) = inputs.at {
                     json["at"] = time.to_string().into();
                 }
@@ -178,7 +189,7 @@ impl Route {
                 writeln!(out, "{json:#}")?;
             }
             Format::Geojson => {
-                let mut json = route::geojson(network, model, &answer)?;
+                let mut json = route::geojson(network, model, answer)?;
                 if let Some(time) = inputs.at {
                     json["at"] = time.to_string().into();
                 }
@@ -186,17 +197,16 @@ impl Route {
                 writeln!(out, "{json}")?;
             }
             Format::Gpx => {
-                let scope = self.scope(&inputs, &answer);
+                let scope = self.scope(inputs, answer);
                 let facts = GpxFacts { scope: &scope, map_time: inputs.origin.replication_timestamp.as_deref() };
-                write!(out, "{}", route::gpx(network, model, &answer, facts)?)?;
+                write!(out, "{}", route::gpx(network, model, answer, facts)?)?;
             }
             Format::Table => {
-                tell(&mut out, &inputs, &answer, compared.as_ref())?;
-                self.tell_scope(&mut out, &inputs, &answer)?;
+                tell(&mut out, inputs, answer, compared)?;
+                self.tell_scope(&mut out, inputs, answer)?;
             }
         }
-        out.flush()?;
-        self.write_files(&inputs, &answer, session)
+        Ok(out.flush()?)
     }
 
     fn planner(&self, inputs: &RoutingInputs, measure: Measure, session: &Session) -> anyhow::Result<Planner> {

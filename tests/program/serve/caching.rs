@@ -70,12 +70,16 @@ fn a_database_that_changes_is_noticed_at_the_next_request() {
     assert!(!old.body.is_empty());
 
     // The file is changed in place.
-    server.place.netcert("certify --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --no-turns").succeeds();
+    server.place.netcert("certify --db demo.gpkg --vehicle AU-BDOUBLE26 --corridor carriageway --no-turns").succeeds();
     let changed = server.json("/api/region");
     assert_eq!(changed["policies"], serde_json::json!(["lane", "carriageway"]));
     assert_ne!((&before["state"], &before["database_hash"]), (&changed["state"], &changed["database_hash"]));
-    assert_eq!(server.get(&tile.replace("lane", "carriageway")).status, 200);
+    let other = tile.replace("lane", "carriageway").replace("AU-SEMI19", "AU-BDOUBLE26");
+    assert_eq!(server.get(&other).status, 200);
     assert_eq!(server.get(&tile).header("etag"), old.header("etag"), "what did not change has the same tag");
+    // A tile says on which of the vehicle's strips a road is safe.
+    server.place.netcert("certify --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --no-turns").succeeds();
+    assert_ne!(server.get(&tile).header("etag"), old.header("etag"));
 
     // Another file replaces it.
     server.place.netcert("ingest {demo} --db other.gpkg --vehicle AU-BDOUBLE26 --no-turns").succeeds();

@@ -41,10 +41,10 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
     const pairs = EVIDENCE.flatMap((source) => [source, colours[source]]);
     return ["match", ["coalesce", ["get", "width_source"], "none"], ...pairs, colours.none] as unknown as Colour;
   }
-  const decided = verdict === "safe" || verdict === "unsafe";
-  if (state.colourBy === "strip" && decided) {
+  if (state.colourBy === "strip") {
     const pairs = POLICIES.flatMap((policy: Policy) => [policy, palette.strips[policy]]);
-    return ["match", ["coalesce", ["get", "uses"], ""], ...pairs, palette.noStrip] as unknown as Colour;
+    const none = { safe: palette.noStrip, unsafe: palette.noStrip, forbidden: palette.forbidden, unknown: palette.unknown }[verdict];
+    return ["match", ["coalesce", ["get", "uses"], ""], ...pairs, none] as unknown as Colour;
   }
   if (verdict === "safe") return stepped(palette.room, roomSteps);
   if (state.colourBy === "reason" && verdict === "unsafe") {

@@ -108,7 +108,7 @@ impl Catalogue {
         self.vehicles.iter().filter(|v| codes.contains(&v.region)).collect()
     }
 
-    /// At most three similar ids. First come those whose id or name contains the typed text, then those that differ
+    /// At most four similar ids. First come those whose id or name contains the typed text, then those that differ
     /// from it in at most a third of its letters. Case, blanks and punctuation are ignored. A word for any lorry stands for the usual ones.
     fn nearest(&self, id: &str) -> Vec<String> {
         let wanted = letters(id);

@@ -100,6 +100,9 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     let mut changed = EvidenceChanged::default();
     let clock = std::time::Instant::now();
     reporter.begin("load", 0);
+    if !ask.dry_run {
+        Database::check_changeable(ask.db)?;
+    }
     let mut db = if ask.dry_run { Database::open(ask.db)? } else { Database::open_to_change(ask.db)? };
     if !ask.dry_run {
         // From here on no other program changes the file, so certificates are made from what it has.

@@ -3,3 +3,4 @@
 pub(crate) mod names;
 pub(crate) mod read;
 pub(crate) mod set_no;
+pub(crate) mod uses;

@@ -58,16 +58,21 @@ impl Database {
         Self::open_with(path, SqliteConnectOptions::new().read_only(true), cache_kib)
     }
 
-    /// Opens a database for reading and changing.
+    /// Checks that this user may change a database, before work that ends in a change. Opening does not tell: SQLite reads what it may not
+    /// write. A change needs a journal beside the file.
     ///
     /// # Errors
-    /// As [`Self::open`], and where this user may not change it ([`StoreError::ReadOnly`]).
-    pub fn open_to_change(path: &Path) -> Result<Self, StoreError> {
+    /// The file or its folder cannot be written ([`StoreError::ReadOnly`]).
+    pub fn check_changeable(path: &Path) -> Result<(), StoreError> {
         check_header(path)?;
-        // SQLite opens what it may not write all the same, and needs a journal beside it.
         std::fs::OpenOptions::new().append(true).open(path).map_err(|e| StoreError::writing(path, e))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         tempfile::tempfile_in(folder).map_err(|e| StoreError::writing(path, e))?;
+        Ok(())
+    }
+
+    /// Opens a database for reading and changing.
+    pub fn open_to_change(path: &Path) -> Result<Self, StoreError> {
         let options = SqliteConnectOptions::new()
             .journal_mode(SqliteJournalMode::Delete)
             .synchronous(SqliteSynchronous::Full)

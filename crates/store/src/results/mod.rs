@@ -16,6 +16,5 @@ pub(crate) mod settings;
 pub(crate) mod stats;
 pub(crate) mod stream;
 pub(crate) mod turns;
-pub(crate) mod uses;
 pub(crate) mod verdicts;
 pub(crate) mod write_order;

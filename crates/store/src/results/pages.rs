@@ -11,11 +11,12 @@ use netcert_roads::turns::JunctionArea;
 use netcert_rows::{Bounds, EdgeRow, SetKey, TurnRow};
 
 use crate::columns::names::{corridor_no, width_columns};
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::StoreError;
 use crate::results::predicate::{BoundSql, ColumnSql, Predicate};
 use crate::results::query::{self, Area, polygons};
-use crate::results::{turns, uses};
+use crate::results::turns;
 use crate::roads::junctions;
 
 type Sql<T> = Result<T, sqlx::Error>;

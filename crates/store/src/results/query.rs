@@ -16,9 +16,10 @@ use netcert_rows::{Bounds, EdgeRow};
 
 use crate::columns::names::{corridor_no, of_kind, width_columns};
 use crate::columns::read::{centimetres, line, word_or_none};
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::{numbers, uses};
+use crate::results::numbers;
 use crate::roads::key::{edge_key, road_name};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -110,6 +111,10 @@ impl Database {
     /// error ([`StoreError::NotThere`]), not an empty answer.
     pub fn query(&mut self, options: &QueryOptions) -> Result<Rows<'_>, StoreError> {
         let vehicle_no = self.vehicle_no_of_set(&options.vehicle, options.policy)?;
+        if let Some(strip) = options.uses {
+            // Nothing is known of a policy that was not certified, and an empty answer would say that no road needs it.
+            self.vehicle_no_of_set(&options.vehicle, strip)?;
+        }
         let area = options.area.as_ref().map(polygons);
         let (sql, values) =
             statement(options, vehicle_no, area.as_ref()).map_err(|e| StoreError::sql(&self.session.path, e))?;

@@ -1,18 +1,19 @@
 //! Counts the length of roads, and the length that each vehicle may use, by class and verdict.
 
-use sqlx::sqlite::SqliteConnection;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::osm::facts::Policy;
 use crate::verdict::{UnsafeReason, Verdict};
 use crate::words::Named;
-use netcert_rows::{NeedCount, Stats, StatsRow};
+use netcert_rows::{NeedCount, Stats, StatsRow, StripCount, TurnStripCount};
 
 use crate::columns::names::verdict_no;
 use crate::columns::read::{verdict, word, word_or_none};
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::StoreError;
-use crate::results::{turns, uses};
+use crate::results::turns;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -50,10 +51,10 @@ impl Database {
                         ORDER BY vehicle_no, corridor_no, highway, verdict_no";
             let rows = sqlx::query(rows).fetch_all(&mut *c).await?;
             let needs = needs(c).await?;
-            let strips = uses::edges(c, "temp.brief").await?;
+            let strips = edge_strips(c, "temp.brief").await?;
             sqlx::raw_sql("DROP TABLE temp.brief").execute(&mut *c).await?;
             let turns = turns::counts(c).await?;
-            let turn_strips = uses::turns(c).await?;
+            let turn_strips = turn_strips(c).await?;
             let network = network.into_iter().map(|(class, edges, m)| (class, edges.unsigned_abs(), m)).collect();
             let certificates = rows.iter().map(stats_row).collect::<Sql<_>>()?;
             let roads = roads.unsigned_abs();
@@ -101,4 +102,53 @@ async fn needs(c: &mut SqliteConnection) -> Sql<Vec<NeedCount>> {
         })
     };
     rows.iter().map(count).collect()
+}
+
+/// Counts edges by vehicle, class and that strip. `brief` has the classes and lengths of edges by `fid`.
+async fn edge_strips(c: &mut SqliteConnection, brief: &str) -> Sql<Vec<StripCount>> {
+    let sql = format!(
+        "SELECT vehicle_id, highway, uses, edges, length_m FROM ( \
+         SELECT c.vehicle_no, b.highway, {uses} AS uses, count(*) AS edges, total(b.length_m) AS length_m \
+         FROM {edges} AS c CROSS JOIN {brief} AS b ON b.fid = c.fid WHERE {first} \
+         GROUP BY c.vehicle_no, b.highway, uses) JOIN vehicle USING (vehicle_no) \
+         ORDER BY vehicle_no, highway, uses IS NULL, uses",
+        edges = uses::EDGES,
+        uses = uses::number(uses::EDGES),
+        first = first_set("certified_set"),
+    );
+    let count = |row: &SqliteRow| -> Sql<StripCount> {
+        Ok(StripCount {
+            vehicle_id: row.try_get(0)?,
+            highway: row.try_get(1)?,
+            uses: uses::read(row, 2)?,
+            edges: row.try_get::<i64, _>(3)?.unsigned_abs(),
+            length_m: row.try_get(4)?,
+        })
+    };
+    sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?.iter().map(count).collect()
+}
+
+/// Counts turns by vehicle and that strip.
+async fn turn_strips(c: &mut SqliteConnection) -> Sql<Vec<TurnStripCount>> {
+    let sql = format!(
+        "SELECT vehicle_id, uses, turns FROM (SELECT c.vehicle_no, {uses} AS uses, count(*) AS turns \
+         FROM {turns} AS c WHERE {first} GROUP BY c.vehicle_no, uses) JOIN vehicle USING (vehicle_no) \
+         ORDER BY vehicle_no, uses IS NULL, uses",
+        turns = uses::TURNS,
+        uses = uses::number(uses::TURNS),
+        first = first_set("certified_turns"),
+    );
+    let count = |row: &SqliteRow| -> Sql<TurnStripCount> {
+        Ok(TurnStripCount {
+            vehicle_id: row.try_get(0)?,
+            uses: uses::read(row, 1)?,
+            turns: row.try_get::<i64, _>(2)?.unsigned_abs(),
+        })
+    };
+    sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?.iter().map(count).collect()
+}
+
+/// The condition that a row called `c` is of its vehicle's first set, so that each edge or turn counts once.
+fn first_set(sets: &str) -> String {
+    format!("c.corridor_no = (SELECT min(corridor_no) FROM {sets} AS s WHERE s.vehicle_no = c.vehicle_no)")
 }

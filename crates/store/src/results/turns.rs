@@ -18,6 +18,7 @@ use netcert_rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::columns::names::{corridor_no, of_kind};
 use crate::columns::read::{centimetres, line, verdict, word};
 use crate::columns::set_no::SetNo;
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::{StoreError, content};
 use crate::file::blob;
@@ -29,7 +30,6 @@ use crate::results::complete::{Complete, Fault, check_complete};
 use crate::results::numbers;
 use crate::results::plans;
 use crate::results::query::{Area, polygons};
-use crate::results::uses;
 use crate::roads::junctions;
 use crate::roads::key::turn_key;
 
@@ -277,6 +277,11 @@ impl Database {
     pub fn query_turns(&mut self, options: &TurnQuery) -> Result<Vec<TurnRow>, StoreError> {
         if !self.has_turns(&options.vehicle, options.policy)? {
             return Err(StoreError::turns_not_certified(&self.session.path, &options.vehicle, options.policy));
+        }
+        if let Some(strip) = options.uses
+            && !self.has_turns(&options.vehicle, strip)?
+        {
+            return Err(StoreError::turns_not_certified(&self.session.path, &options.vehicle, strip));
         }
         let area = options.area.as_ref().map(polygons);
         let mut rows = self.session.run(async |c| fetch(c, options).await)?;

@@ -13,9 +13,9 @@ use netcert_rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin, SetKey};
 
 use crate::columns::names::{corridor_no, width_columns};
 use crate::columns::read::{centimetres, line, verdict, word, word_or_none};
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::results::uses;
 use crate::roads::key::{edge_key, road_name, turn_key};
 
 type Sql<T> = Result<T, sqlx::Error>;

@@ -13,9 +13,9 @@ use netcert_rows::{MainRoad, SetKey};
 
 use crate::columns::names::{corridor_no, width_columns};
 use crate::columns::read::{line, verdict, word_or_none};
+use crate::columns::uses;
 use crate::database::Database;
 use crate::error::{StoreError, content};
-use crate::results::uses;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
