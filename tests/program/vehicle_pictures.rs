@@ -73,7 +73,7 @@ fn the_program_draws_beside_showing() {
     let place = WorkFolder::empty();
     place.netcert("vehicles show EU-CAT18.75 --svg cat.svg").succeeds().shows("[[vehicle.unit]]").tells("cat.svg");
     xml::well_formed(&String::from_utf8(place.read("cat.svg")).unwrap());
-    place.netcert("vehicles show EU-CAT18.75 --svg no/such/folder.svg").fails().tells("cannot write the picture");
+    place.netcert("vehicles show EU-CAT18.75 --svg no/such/folder.svg").fails().tells("make the folder no/such first");
 }
 
 /// A lorry with a trailer behind it: hitch offset and rear overhang of the lorry, front overhang and limit of the trailer.
