@@ -62,9 +62,8 @@ impl Certify {
                 path.display()
             );
         }
-        let mut begun = false;
-        for (policy, vehicles) in work {
-            if std::mem::replace(&mut begun, true) {
+        for (done, (policy, vehicles)) in work.into_iter().enumerate() {
+            if done > 0 {
                 say_when_stopped("; the certificates of the policies before are stored");
             }
             let settings = Settings { policy, ..settings.clone() };

@@ -98,7 +98,7 @@ export const policyWords: Record<Policy, { name: string; meaning: string }> = {
 export const stripWords: Record<Policy | "none", string> = {
   lane: "Own lane",
   direction: "Own direction: other lanes, too",
-  carriageway: "Whole road: oncoming traffic waits",
+  carriageway: "Whole road: oncoming traffic may wait",
   none: "None, or forbidden, or unknown",
 };
 

@@ -111,7 +111,7 @@ export class Legend {
       );
     const rows = certified.length === 0 ? [] : POLICIES.filter((policy) => certified.includes(policy)).map((policy) => row(policy, palette.strips[policy]));
     const missing = POLICIES.filter((policy) => !certified.includes(policy)).map((policy) => `“${policyWords[policy].name}”`);
-    const note = missing.length === 0 ? [] : [h("p", { class: "strip-note" }, `Not asked for in this database: ${missing.join(" and ")}. netcert certify --corridor adds it.`)];
+    const note = missing.length === 0 ? [] : [h("p", { class: "strip-note" }, `This database has no certificates for ${missing.join(" and ")}. netcert certify --corridor makes them.`)];
     return [h("div", { class: "strips", role: "group", "aria-label": "Narrowest certified strip" }, h("p", { class: "scale-name", "aria-hidden": "true" }, "Narrowest certified strip"), ...rows, row("none", palette.noStrip), ...note)];
   }
 }

@@ -100,14 +100,15 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
     let mut changed = EvidenceChanged::default();
     let clock = std::time::Instant::now();
     reporter.begin("load", 0);
-    if !ask.dry_run {
+    let mut db = if ask.dry_run {
+        Database::open(ask.db)?
+    } else {
         Database::check_changeable(ask.db)?;
-    }
-    let mut db = if ask.dry_run { Database::open(ask.db)? } else { Database::open_to_change(ask.db)? };
-    if !ask.dry_run {
+        let mut db = Database::open_to_change(ask.db)?;
         // From here on no other program changes the file, so certificates are made from what it has.
         db.begin_change()?;
-    }
+        db
+    };
     let mut network = db.load_network()?;
     let mut register = db.register()?;
     reporter.end();
