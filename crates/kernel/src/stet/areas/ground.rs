@@ -257,17 +257,18 @@ impl AreaGrid {
         inside
     }
 
-    /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
-    pub(in crate::stet) fn room(&self, p: PlanePoint) -> f64 {
-        self.room_and_nearest(p).0
+    /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`]. `inside`: whether the place is inside, where
+    /// that is known.
+    pub(in crate::stet) fn room(&self, p: PlanePoint, inside: Option<bool>) -> f64 {
+        self.room_and_nearest(p, inside).0
     }
 
     /// Room of a place, and the nearest segment: `None` for a place inside that is farther than [`FAR_M`] from all of them.
-    fn room_and_nearest(&self, p: PlanePoint) -> (f64, Option<u32>) {
+    fn room_and_nearest(&self, p: PlanePoint, inside: Option<bool>) -> (f64, Option<u32>) {
         count(WorkKind::Distance, 1);
         let near = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p);
         let far = near.0.sqrt();
-        match self.contains(p) {
+        match inside.unwrap_or_else(|| self.contains(p)) {
             true => (far, near.1),
             false if near.1.is_some() => (-far, near.1),
             false => {
@@ -328,7 +329,15 @@ impl AreaGrid {
             if near.middle_m - HALF_CELL_M >= within {
                 break;
             }
-            if segment.squared(middle) >= within * within {
+            let way = segment.towards(middle);
+            let squared = way[0] * way[0] + way[1] * way[1];
+            if squared >= within * within {
+                continue;
+            }
+            let beyond = beyond_line(&corners, middle, way, squared.sqrt());
+            if beyond > TOUCHING_M && beyond - piece.most >= leeway.min(piece.enough) {
+                room = room.min(beyond);
+                leeway = leeway.min(beyond - piece.most);
                 continue;
             }
             let Some(gap) = segment.gap(&corners, &pairs) else { return outside() };
@@ -364,7 +373,7 @@ impl AreaGrid {
                 continue;
             }
             let (half_length, half_way) = (half_part * length, half_moment * way);
-            let (room, nearest) = self.room_and_nearest(at(part, moment));
+            let (room, nearest) = self.room_and_nearest(at(part, moment), None);
             let depth = -room;
             let around = depth + half_length + half_way;
             if around.is_nan() {
@@ -399,6 +408,14 @@ impl AreaGrid {
         };
         self.segments.iter().any(|segment| within(segment.a))
     }
+}
+
+/// How far four corners lie at least from a segment, of which `way` leads from `middle` to the nearest place, `far` metres. All of the
+/// segment lies beyond the line across the way's end.
+#[inline(always)]
+fn beyond_line(corners: &[PlanePoint; 4], middle: PlanePoint, way: PlanePoint, far: f64) -> f64 {
+    let along = |p: &PlanePoint| ((p[0] - middle[0]) * way[0] + (p[1] - middle[1]) * way[1]) / far;
+    far - corners.iter().map(along).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The corners of a box around segments.
@@ -516,7 +533,7 @@ mod tests {
             ([21.0, 0.0], -1.0),
             ([0.0, -30.0], -10.0),
         ] {
-            assert!((ground.room(p) - room).abs() < 1e-12, "{p:?}: {}", ground.room(p));
+            assert!((ground.room(p, None) - room).abs() < 1e-12, "{p:?}: {}", ground.room(p, None));
         }
     }
 
@@ -566,7 +583,7 @@ mod tests {
                     let (part, moment) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
                     let between = |a: PlanePoint, b: PlanePoint, t: f64| [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
                     let piece = [0, 1].map(|end| between(before[end], after[end], moment));
-                    deepest = deepest.max(-ground.room(between(piece[0], piece[1], part)));
+                    deepest = deepest.max(-ground.room(between(piece[0], piece[1], part), None));
                 }
             }
             let depth = |enough: f64| {
@@ -613,7 +630,7 @@ mod tests {
         for p in places {
             let far = apart(area.nearest(p).unwrap(), p);
             let room = if area.contains(p) { far.min(FAR_M) } else { -far };
-            assert!((ground.room(p) - room).abs() < 1e-9, "{p:?}: {} {room}", ground.room(p));
+            assert!((ground.room(p, None) - room).abs() < 1e-9, "{p:?}: {} {room}", ground.room(p, None));
         }
     }
 

@@ -32,7 +32,9 @@ pub(in crate::stet) struct Rooms {
     /// The station after the last step.
     head: usize,
     /// Without disturbances: the places that were measured last, with their rooms.
-    pub(in crate::stet) places: Vec<(PlanePoint, f64)>,
+    places: Vec<(PlanePoint, f64)>,
+    /// The station at which they were measured last.
+    places_head: usize,
 }
 
 impl Rooms {
@@ -57,6 +59,7 @@ impl Rooms {
             critical: [0, 1],
             head: 0,
             places: Vec::new(),
+            places_head: 0,
         }
     }
 
@@ -70,6 +73,14 @@ impl Rooms {
         self.head = head + 1;
     }
 
+    /// Forgets the rooms of places unless they are those of the station before `head`.
+    pub(in crate::stet) fn enter_nominal(&mut self, head: usize, anew: bool) {
+        if self.places_head + 1 != head || anew {
+            self.places.clear();
+        }
+        self.places_head = head;
+    }
+
     /// The room of a place without disturbances, unless it is known to be at least `enough`: it falls by no more than the place has moved
     /// since it was measured. Places are numbered.
     pub(in crate::stet) fn nominal(
@@ -80,11 +91,14 @@ impl Rooms {
         p: PlanePoint,
         enough: f64,
     ) -> Option<f64> {
-        let known = self.places.get(number);
-        if known.is_some_and(|(q, room)| room - apart(*q, p) >= enough) {
+        let known = self.places.get(number).map(|(q, room)| (apart(*q, p), *room));
+        if known.is_some_and(|(moved, room)| room - moved >= enough) {
             return None;
         }
-        let rooms = areas.count(head, head).map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
+        // A place that has moved by less than its room has not crossed the boundary.
+        let alone = areas.count(head, head).nth(1).is_none();
+        let inside = known.filter(|(moved, room)| alone && *moved < room.abs()).map(|(_, room)| room > 0.0);
+        let rooms = areas.count(head, head).map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p, inside)));
         let room = rooms.fold(FAR_OUTSIDE_M, f64::max);
         match self.places.get_mut(number) {
             Some(known) => *known = (p, room),

@@ -12,9 +12,8 @@ pub(super) fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize;
         return;
     }
     let only = !minima.counted.is_empty();
-    if track.areas.changes(stand.head) || track.areas.changes(stand.head.saturating_sub(1)) {
-        body.rooms.places.clear();
-    }
+    let changes = track.areas.changes(stand.head) || track.areas.changes(stand.head.saturating_sub(1));
+    body.rooms.enter_nominal(stand.head, changes);
     let mut number = 0;
     for index in 0..body.points.len() {
         let before = index.saturating_sub(1);
