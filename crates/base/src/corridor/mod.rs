@@ -5,6 +5,8 @@ mod closed_form;
 mod fit;
 mod side;
 
+use std::ops::Range;
+
 pub use area::{AreaSpan, PlaneArea};
 pub use closed_form::CurvatureProfile;
 pub(crate) use closed_form::gentle_clothoid_step;
@@ -45,5 +47,28 @@ impl Corridor {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
+    }
+
+    /// The corridor of some of its stations. An area counts at those of its stations that are among them.
+    ///
+    /// # Panics
+    /// The range ends behind the last station.
+    #[must_use]
+    pub fn sliced(&self, range: Range<usize>) -> Self {
+        let column = |of: &[f64]| of[range.clone()].to_vec();
+        let heads = |heads: &Range<usize>| {
+            heads.start.max(range.start) - range.start..heads.end.min(range.end).max(range.start) - range.start
+        };
+        let areas = self.areas.iter().map(|span| AreaSpan { heads: heads(&span.heads), area: span.area.clone() });
+        Self {
+            spacing_m: self.spacing_m,
+            x: column(&self.x),
+            y: column(&self.y),
+            heading: column(&self.heading),
+            curvature: column(&self.curvature),
+            left_m: column(&self.left_m),
+            right_m: column(&self.right_m),
+            areas: areas.filter(|span| span.heads.start + 1 < span.heads.end).collect(),
+        }
     }
 }
