@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::roads::Roads;
@@ -12,6 +13,7 @@ use crate::corridor::{AreaSpan, Corridor, Frame};
 use crate::network::{Edge, EdgeNo, Movement, Network};
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
+use crate::stop::{Stop, Stopped};
 use crate::turns::{Joint, LengthClass, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
@@ -39,7 +41,7 @@ pub struct TurnPiece {
 }
 
 /// A source of turns.
-pub trait Turns: Send {
+pub trait Turns: Send + Sync {
     /// The ways to drive from one edge into another that the source counts, the best first. `arcs` are the edges between of a passage,
     /// else empty.
     ///
@@ -147,6 +149,60 @@ impl Menu {
         self.choose(&Choices::default());
     }
 
+    /// Makes the chosen paths of turns, given with the arcs between, on several threads. Turns that have no such path are left for
+    /// [`Self::chosen`].
+    ///
+    /// # Errors
+    /// `stop` was told.
+    pub(super) fn make(
+        &mut self,
+        strokes: &mut Strokes,
+        turns: &[(Movement, &[EdgeNo])],
+        stop: &Stop,
+    ) -> Result<(), Stopped> {
+        let wanted = turns.iter().filter_map(|&(movement, arcs)| {
+            let key = TurnEnds::of(&movement);
+            if self.places.contains_key(&key) {
+                return None;
+            }
+            let (made, code) = (self.made.get(&key), self.codes.get(&key).copied());
+            let known = made.is_some_and(|made| code.map_or(made.paths.is_some(), |code| made.of_code(code).is_some()));
+            (!known).then_some((key, movement, arcs, code))
+        });
+        let wanted: Vec<_> = wanted.collect();
+        // All threads have the lines that the turns need.
+        for (_, movement, arcs, _) in &wanted {
+            for edge in [movement.from, movement.to].iter().chain(*arcs) {
+                let _ = strokes.line_of(*edge);
+            }
+        }
+        let (source, lines) = (self.turns.as_ref(), &*strokes);
+        let made: Vec<_> = wanted
+            .par_iter()
+            .map_init(
+                || lines.clone(),
+                |strokes, (_, movement, arcs, code)| {
+                    stop.check()?;
+                    Ok(match code {
+                        Some(code) => source.of_code(strokes, movement, arcs, *code),
+                        None => source.first(strokes, movement, arcs),
+                    })
+                },
+            )
+            .collect::<Result<_, Stopped>>()?;
+        for ((key, _, _, code), piece) in wanted.into_iter().zip(made) {
+            let made = self.made.entry(key).or_default();
+            match (code, piece) {
+                (Some(_), Ok(Some(piece))) => made.coded.push(Arc::new(piece)),
+                (Some(_), _) => {}
+                (None, piece) => {
+                    made.paths.get_or_insert(piece.map(|piece| piece.into_iter().map(Arc::new).collect()));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The chosen path of a turn, or of a passage over these arcs.
     ///
     /// # Errors
@@ -242,13 +298,14 @@ impl Turns for NoTurns {
 }
 
 /// The corridors of a network's strokes under one set's settings. Each is made when it is first needed, and kept.
+#[derive(Clone)]
 pub struct Strokes {
     roads: Arc<Roads>,
     settings: Settings,
     params: TurnParams,
     rungs: Rungs,
     /// By edge: its stroke, and its index in the stroke.
-    place: Vec<(u32, u32)>,
+    place: Arc<[(u32, u32)]>,
     made: FxHashMap<u32, Result<Arc<StrokeLine>, UnknownReason>>,
 }
 
@@ -271,7 +328,7 @@ impl Strokes {
             }
         }
         let params = settings.turn_params();
-        Self { roads: Arc::clone(roads), settings, params, rungs, place, made: FxHashMap::default() }
+        Self { roads: Arc::clone(roads), settings, params, rungs, place: place.into(), made: FxHashMap::default() }
     }
 
     /// The strips of edges and turns.

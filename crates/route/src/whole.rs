@@ -5,8 +5,9 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use super::assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, movement};
-use super::drive::Drive;
+use super::drive::{Drive, Join};
 use super::driver::Driver;
+use super::look::{Judged, judge};
 use super::obstacles::Refutation;
 use super::pieces::{Choices, Menu, Strokes, Turns};
 use super::roads::Roads;
@@ -14,7 +15,7 @@ use super::rungs::Rungs;
 use super::strip_use::StripUse;
 use super::turn_ends::TurnEnds;
 use crate::corridor::Corridor;
-use crate::network::{EdgeNo, Network, offset_m};
+use crate::network::{EdgeNo, MovementKind, Network, offset_m};
 use crate::osm::LonLat;
 use crate::stet::{self, Certificate, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -26,6 +27,9 @@ const TURN_REACH_M: f64 = 120.0;
 const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
+/// How much of what is missing a road gets, after a look and after a certificate over the whole, which takes longest.
+const AFTER_LOOK: f64 = 2.0;
+const AFTER_CERTIFICATE: f64 = 8.0;
 /// How often what fails on one way is raised.
 pub(super) const MOST_RAISED: usize = 40;
 
@@ -102,24 +106,32 @@ impl Whole {
         let rungs = rungs.on_way(&way.drive.edges);
         let differing: Vec<EdgeNo> = known.above(&rungs).into_iter().chain(rungs.above(known)).collect();
         self.put_rungs(rungs, &differing);
+        let mut judged = Judged::default();
         for _ in 0..most_raised {
             // The place that refutes the way, and what is missing there, metres.
             let (refutation, missing_m) = match self.joined(way, stop)? {
                 Err(refutation) => (refutation, f32::MAX),
                 Ok(path) => {
-                    let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
-                    let results = stet::certify_parts(&path.corridor, model, &parts(&path), options, stop)?;
-                    let results: Vec<_> = path.parts.iter().map(|part| part.kind).zip(results).collect();
-                    if !results.iter().all(|(_, result)| result.safe()) {
-                        if self.raise(|rungs, network| rungs.raise_failing(network, &results)) {
-                            continue;
+                    judged = judge(&path, &judged, &self.driver, stop)?;
+                    let certified = if judged.safe() { self.certificate(&path, stop)? } else { None };
+                    let (refutation, share) = match certified {
+                        None => (worst(&judged.parts), AFTER_LOOK),
+                        Some((certificate, _)) if certificate.result.safe() => {
+                            return Ok(Ok(self.certified(path, certificate)));
                         }
-                        return Ok(Err(worst(&results)));
+                        Some((certificate, of_parts)) => {
+                            judged.put(of_parts);
+                            (refuted(&path, Some(&certificate)), AFTER_CERTIFICATE)
+                        }
+                    };
+                    if self.raise(|rungs, network| rungs.raise_failing(network, &judged.parts, share)) {
+                        continue;
                     }
-                    match self.certify_path(path, stop)? {
-                        Ok(certified) => return Ok(Ok(certified)),
-                        Err(refutation) => (refutation, 0.0),
+                    if share < AFTER_CERTIFICATE {
+                        return Ok(Err(refutation));
                     }
+                    // What lies beside the place may be too narrow for the whole way.
+                    (refutation, 0.0)
                 }
             };
             let at = refutation.at;
@@ -227,10 +239,14 @@ impl Whole {
     ) -> Result<Option<CertifiedWay>, Stopped> {
         self.menu.choose(choices);
         let Ok(path) = self.joined(way, stop)? else { return Ok(None) };
-        let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
-        let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
-        let safe = certified.filter(|(certificate, _)| certificate.result.safe());
+        let safe = self.certificate(&path, stop)?.filter(|(certificate, _)| certificate.result.safe());
         Ok(safe.map(|(certificate, _)| self.certified(path, certificate)))
+    }
+
+    /// The certificate of a path over the whole, with the plan that is best for its parts, and their results.
+    fn certificate(&self, path: &RoutePath, stop: &Stop) -> Result<Option<(Certificate, Vec<SpanResult>)>, Stopped> {
+        let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+        stet::certify_planned(&path.corridor, model, &parts(path), options, stop)
     }
 
     /// Chooses paths of turns, and of every other turn the best one.
@@ -257,6 +273,11 @@ impl Whole {
 
     /// Joins the pieces of a way. If two turns overlap, their other paths are tried.
     fn joined(&mut self, way: &DrivenWay<'_>, stop: &Stop) -> Result<Result<RoutePath, Refutation>, Stopped> {
+        let movements = &self.roads.movements;
+        let of_join = |join: Join<'_>| movement(movements, join.from, join.arcs, join.to);
+        let turns = way.drive.joins().filter_map(|join| Some((of_join(join)?, join.arcs)));
+        let turns: Vec<_> = turns.filter(|(movement, _)| movement.kind != MovementKind::StraightOn).collect();
+        self.menu.make(&mut self.strokes, &turns, stop)?;
         let mut strung = 0;
         loop {
             strung += 1;
@@ -288,22 +309,25 @@ impl Whole {
 
     fn certify_path(&mut self, path: RoutePath, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
         let certificate = stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, stop)?;
-        let refuted = |certificate: Option<&Certificate>| Refutation {
-            at: culprit(&path, certificate),
-            result: certificate.and_then(|c| c.result.rsc_m.zip(c.result.hinge_margin_rad)),
-            assembly: None,
-            left_out: false,
-        };
-        let Some(certificate) = certificate else { return Ok(Err(refuted(None))) };
-        if !certificate.result.safe() {
-            return Ok(Err(refuted(Some(&certificate))));
-        }
-        Ok(Ok(self.certified(path, certificate)))
+        Ok(match certificate {
+            Some(certificate) if certificate.result.safe() => Ok(self.certified(path, certificate)),
+            certificate => Err(refuted(&path, certificate.as_ref())),
+        })
     }
 
     fn certified(&mut self, path: RoutePath, certificate: Certificate) -> CertifiedWay {
         let uses = StripUse::all(&mut self.strokes, &path, &certificate, &self.driver.model.vehicle);
         CertifiedWay { path, certificate, uses }
+    }
+}
+
+/// The refutation of a way by the certificate of its path.
+fn refuted(path: &RoutePath, certificate: Option<&Certificate>) -> Refutation {
+    Refutation {
+        at: culprit(path, certificate),
+        result: certificate.and_then(|c| c.result.rsc_m.zip(c.result.hinge_margin_rad)),
+        assembly: None,
+        left_out: false,
     }
 }
 
