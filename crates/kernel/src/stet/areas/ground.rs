@@ -411,9 +411,12 @@ impl AreaGrid {
 }
 
 /// How far four corners lie at least from a segment, of which `way` leads from `middle` to the nearest place, `far` metres. All of the
-/// segment lies beyond the line across the way's end.
+/// segment lies beyond the line across the way's end. A middle on the segment has no such line.
 #[inline(always)]
 fn beyond_line(corners: &[PlanePoint; 4], middle: PlanePoint, way: PlanePoint, far: f64) -> f64 {
+    if far < TOUCHING_M {
+        return f64::NEG_INFINITY;
+    }
     let along = |p: &PlanePoint| ((p[0] - middle[0]) * way[0] + (p[1] - middle[1]) * way[1]) / far;
     far - corners.iter().map(along).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -557,6 +560,24 @@ mod tests {
     fn a_piece_that_passes_an_edge_between_two_moments_does_not_fit() {
         assert!(room([[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]) < 0.0);
         assert!((room([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]) - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_piece_whose_middle_lies_on_an_edge_does_not_fit() {
+        // All numbers are exact.
+        let area = PlaneArea { rings: vec![square([0.0; 2], 16.0)] };
+        let ground = AreaGrid::new(&area).unwrap();
+        for (before, after) in [
+            ([[-15.5, 1.0], [-15.5, 2.0]], [[-16.5, 1.0], [-16.5, 2.0]]),
+            ([[15.5, 1.0], [15.5, 2.0]], [[16.5, 1.0], [16.5, 2.0]]),
+            ([[16.0, 1.0], [16.0, 2.0]], [[16.0, 2.0], [16.0, 3.0]]),
+        ] {
+            for inside in [false, true] {
+                let piece = SweptPiece { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2], inside };
+                let (room, leeway) = ground.swept(&piece);
+                assert!(room <= 0.0 && leeway <= 0.0, "{before:?} {inside}: {room} {leeway}");
+            }
+        }
     }
 
     #[test]
