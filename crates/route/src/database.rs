@@ -11,9 +11,9 @@ use super::relative::{Peer, Standings};
 use super::roads::Roads;
 use crate::network::{EdgeNo, Movements, Network};
 use crate::osm::facts::Policy;
-use crate::rows::CertificateStanding;
+use crate::rows::{CertificateStanding, TurnStep};
 use crate::stet::{Model, ModelError};
-use crate::store::{CertifiedSet, Database, QueryOptions, Reference, StoreError, TurnQuery};
+use crate::store::{CertifiedSet, Database, Reference, StoreError};
 use crate::vehicle::Vehicle;
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -30,20 +30,20 @@ impl Permits {
     ) -> Result<Self, StoreError> {
         let settings = set.settings()?;
         let (vehicle, policy) = (&set.vehicle_id, set.policy);
+        if !database.has_turns(vehicle, policy)? {
+            return Err(StoreError::turns_not_certified(database.path(), vehicle, policy));
+        }
         let mut edges = vec![Permit::UNKNOWN; network.edges.len()];
-        for row in database.query(&QueryOptions::new(vehicle, policy))? {
-            let row = row?;
-            if let Some(slot) = edges.get_mut(row.edge.index.index()) {
-                *slot = Permit::of(&row.certificate);
+        for row in database.edge_conclusions(vehicle, policy)? {
+            let (edge, verdict, rsc_m) = row?;
+            if let Some(slot) = edges.get_mut(edge.index()) {
+                *slot = Permit { verdict, rsc_m };
             }
         }
-        let turns: FxHashMap<(i64, i64), Permit> = database
-            .query_turns(&TurnQuery::new(vehicle, policy))?
-            .into_iter()
-            .map(|row| ((row.turn.from_edge, row.turn.to_edge), Permit::of(&row.certificate)))
-            .collect();
-        let id = |edge: EdgeNo| network.edges.get(edge.index()).map_or(0, |edge| edge.id);
-        let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);
+        let of_turn = |step: TurnStep| ((step.from, step.to), Permit { verdict: step.verdict, rsc_m: step.rsc_m });
+        let turns = database.turn_steps(vehicle, policy)?.map(|step| Ok(of_turn(step?)));
+        let turns: FxHashMap<(EdgeNo, EdgeNo), Permit> = turns.collect::<Result<_, StoreError>>()?;
+        let turn = |from, to| turns.get(&(from, to)).copied().unwrap_or(Permit::UNKNOWN);
         Ok(Self::new(settings, edges, movements, turn))
     }
 }

@@ -8,6 +8,7 @@ use sqlx::sqlite::SqliteRow;
 use crate::network::EdgeNo;
 use crate::osm::NodeId;
 use crate::osm::facts::Policy;
+use netcert_base::verdict::Verdict;
 use netcert_rows::{EdgeStep, TurnRow, TurnStep};
 
 use crate::columns::names::width_columns;
@@ -20,6 +21,9 @@ use crate::results::turns::{self, TurnQuery};
 use crate::roads::key::edge_key;
 
 type Sql<T> = Result<T, sqlx::Error>;
+
+/// An edge with its verdict and its RSC, metres, if it was computed.
+pub type EdgeConclusion = (EdgeNo, Verdict, Option<f64>);
 
 /// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
 pub type StraightOn = (EdgeNo, Option<EdgeNo>);
@@ -37,6 +41,20 @@ impl Database {
              WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? ORDER BY c.fid"
         );
         Ok(self.streamed(sql, vehicle, policy, edge_step))
+    }
+
+    /// The verdict and RSC of every edge for a vehicle. There are no rows if the vehicle is not certified under this policy.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edge_conclusions(
+        &mut self,
+        vehicle: &str,
+        policy: Policy,
+    ) -> Result<RowStream<'_, EdgeConclusion>, StoreError> {
+        let sql = "SELECT fid, verdict_no, rsc_mm FROM certificate_compact \
+                   WHERE vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND corridor_no = ? ORDER BY fid";
+        Ok(self.streamed(sql.to_owned(), vehicle, policy, edge_conclusion))
     }
 
     /// The facts of every turn for a vehicle. There are no rows if its turns are not certified: see [`Database::has_turns`].
@@ -108,6 +126,11 @@ impl Database {
 fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
     let next: Option<u32> = row.try_get(1)?;
     Ok((edge_of(row.try_get(0)?), next.map(edge_of)))
+}
+
+fn edge_conclusion(row: &SqliteRow) -> Sql<EdgeConclusion> {
+    let fid: u32 = row.try_get(0)?;
+    Ok((edge_of(fid), verdict(row, 1, || format!("edge {fid}"))?, metres(row, 2)?))
 }
 
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
