@@ -3,7 +3,7 @@
 
     benches/routes.py [--pairs N] [--seed S] REGION.gpkg VEHICLE NETCERT [NETCERT...] [-- ROUTE_OPTION...]
 
-The programs are asked in turn, pair after pair. A pair is two edges of main roads, 2 to 15 km apart in a straight line. Printed: the answers
+The programs are asked in turn, pair after pair. A pair without any answer is left out; one that only some programs answer ends the run. A pair is two edges of main roads, 2 to 15 km apart in a straight line. Printed: the answers
 of each kind, conditions, metres of oncoming lanes, and seconds by the clock; then each pair on which the programs differ.
 """
 
@@ -17,6 +17,8 @@ import subprocess
 import sys
 import time
 
+# So many pairs are drawn for each that is asked for.
+MOST_DRAWS = 50
 MAIN = ("primary", "secondary", "tertiary", "trunk")
 
 
@@ -87,13 +89,17 @@ def main():
     arguments, options = parser.parse_args(given[:cut]), given[cut + 1 :]
     draw, places = random.Random(arguments.seed), middles(arguments.db)
     answers = {netcert: [] for netcert in arguments.netcert}
-    asked = []
-    while len(asked) < arguments.pairs:
+    asked, failed = [], {netcert: 0 for netcert in arguments.netcert}
+    for _ in range(MOST_DRAWS * arguments.pairs):
         pair = draw.sample(places, 2)
-        if not 2 <= apart_km(*pair) <= 15:
+        if len(asked) == arguments.pairs or not 2 <= apart_km(*pair) <= 15:
             continue
         of_each = [ask(netcert, arguments.db, arguments.vehicle, pair, options) for netcert in arguments.netcert]
         if any(answer is None for answer, _ in of_each):
+            for netcert, (answer, _) in zip(arguments.netcert, of_each, strict=True):
+                failed[netcert] += answer is None
+            if len(set(failed.values())) > 1 or sum(failed.values()) > MOST_DRAWS * len(failed):
+                sys.exit(f"no answer, by program: {failed}; the last pair was {pair}")
             continue
         asked.append(pair)
         for netcert, answer in zip(arguments.netcert, of_each, strict=True):

@@ -28,13 +28,13 @@ impl Rungs {
     }
 
     /// Raises what fails on a way: of each run of failing parts the narrowest road that can become wider, else its turns, else the roads
-    /// beside the run. A road that only leads to a narrow one keeps its strip so. A road gets `share` of what is missing. Returns as
+    /// beside the run. A road that only leads to a narrow one keeps its strip so. A road gets `times` what is missing. Returns as
     /// [`Self::raise`].
     pub(super) fn raise_failing(
         &mut self,
         network: &Network,
         parts: &[(PartKind, SpanResult)],
-        share: f64,
+        times: f64,
     ) -> Vec<EdgeNo> {
         let mut raised = Vec::new();
         let mut at = 0;
@@ -45,7 +45,7 @@ impl Rungs {
                 continue;
             }
             let missing_m = run.iter().filter_map(|(_, result)| result.rsc_m).fold(0.0, |most: f64, m| most.max(-m));
-            let missing_m = (share * missing_m) as f32;
+            let missing_m = (times * missing_m) as f32;
             let mut roads: Vec<(f32, EdgeNo)> =
                 run.iter().filter_map(edge).filter_map(|edge| Some((self.width_m(network, edge)?, edge))).collect();
             roads.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

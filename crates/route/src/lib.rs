@@ -22,7 +22,7 @@
 //! | `rungs` | the strip on which each edge and turn is used |
 //! | `ladder` | one vehicle with its permits under several policies |
 //! | `climb` | what stands higher on a way that fails |
-//! | `look` | which parts of a way that climbs fail |
+//! | `look` | finds the failing parts of a way that climbs |
 //! | `turn_ends` | the edges that name a turn |
 //! | `rung_prices` | what it costs a route to use more than its own lane |
 //! | `strip_use` | where a certified route uses more than its own lane, and how far |

@@ -6,16 +6,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::assemble::{PartKind, RoutePath};
+use super::assemble::{PartKind, RoutePart, RoutePath};
 use super::driver::Driver;
 use crate::stet::{SpanResult, certify_parts};
 use crate::stop::{Stop, Stopped};
 
 /// Length of the pieces, metres.
 const PIECE_M: f64 = 1_000.0;
-/// Road on both sides of a part that is looked at again, metres.
-const BESIDE_M: f64 = 60.0;
-/// Road before and after a piece, which is not judged: metres, and vehicle lengths. Behind it the vehicle has forgotten how it began.
+/// Road on both sides of a part that is looked at again, and road before and after a piece, which is not judged: metres, and vehicle lengths.
 const BEYOND_M: f64 = 30.0;
 const BEYOND_LENGTHS: f64 = 2.0;
 /// Distance between the places of a part that are compared, and what they may differ by, metres.
@@ -36,15 +34,15 @@ pub(super) struct Judged {
 /// Places along a part, at even distances: position (metres), heading (radians) and half-widths (metres).
 type Shape = Vec<[f64; 5]>;
 
-/// Looks at all parts of a way, but for those that are safe in `before` and have not changed since: these keep their results.
+/// Looks at all parts of a way, except those that are safe in `before` and have kept their shape.
 ///
 /// # Errors
 /// `stop` was told.
 pub(super) fn judge(path: &RoutePath, before: &Judged, driver: &Driver, stop: &Stop) -> Result<Judged, Stopped> {
     let shapes: Vec<Shape> = path.parts.iter().map(|part| shape(path, &part.stations)).collect();
     let kept: Vec<Option<&SpanResult>> =
-        path.parts.iter().zip(&shapes).map(|(part, shape)| before.safe_part(part.kind, shape)).collect();
-    let beside = stations(path, BESIDE_M);
+        (0..shapes.len()).map(|number| before.safe_part(&path.parts, number, &shapes[number])).collect();
+    let beside = stations(path, beyond_m(driver));
     let mut near: Vec<Range<usize>> = Vec::new();
     for (part, _) in path.parts.iter().zip(&kept).filter(|(_, kept)| kept.is_none()) {
         let end = (part.stations.end + beside).min(path.corridor.len());
@@ -55,7 +53,7 @@ pub(super) fn judge(path: &RoutePath, before: &Judged, driver: &Driver, stop: &S
     }
     let mut results: Vec<Option<SpanResult>> = kept.into_iter().map(Option::<&_>::cloned).collect();
     for (part, found) in looked_at(path, &near, driver, stop)? {
-        // A part that is longer than the stretch that was looked at is no better than it was elsewhere.
+        // Only some of a kept part was looked at again. It gets the worse of both results.
         let result = &mut results[part];
         *result = Some(result.take().map_or_else(|| found.clone(), |known| worse(&known, &found).clone()));
     }
@@ -73,13 +71,16 @@ impl Judged {
 
     /// Puts other results of the parts in place of these.
     pub(super) fn put(&mut self, results: Vec<SpanResult>) {
+        debug_assert_eq!(self.parts.len(), results.len());
         for ((_, known), result) in self.parts.iter_mut().zip(results) {
             *known = result;
         }
     }
 
-    /// The result of a part that is safe and has this shape.
-    fn safe_part(&self, kind: PartKind, shape: &Shape) -> Option<&SpanResult> {
+    /// The result of the part with this number if it is safe and has kept its shape. A way may drive a part twice.
+    fn safe_part(&self, parts: &[RoutePart], number: usize, shape: &Shape) -> Option<&SpanResult> {
+        let kind = parts[number].kind;
+        let earlier = parts[..number].iter().filter(|part| part.kind == kind).count();
         let same = |known: &Shape| {
             // Stations may be elsewhere along the road.
             let near = |a: &[f64; 5], b: &[f64; 5]| {
@@ -90,11 +91,9 @@ impl Judged {
             };
             known.len() == shape.len() && known.iter().zip(shape).all(|(a, b)| near(a, b))
         };
-        let of_kind = self.parts.iter().zip(&self.shapes).filter(|((of, _), _)| *of == kind);
-        of_kind
-            .map(|((_, result), known)| (result, known))
-            .find(|(result, known)| result.safe() && same(known))
-            .map(|found| found.0)
+        let mut of_kind = self.parts.iter().zip(&self.shapes).filter(|((of, _), _)| *of == kind);
+        let ((_, result), known) = of_kind.nth(earlier)?;
+        (result.safe() && same(known)).then_some(result)
     }
 }
 
@@ -121,7 +120,7 @@ fn looked_at(
     stop: &Stop,
 ) -> Result<Vec<(usize, SpanResult)>, Stopped> {
     let corridor = &path.corridor;
-    let beyond = stations(path, BEYOND_M + BEYOND_LENGTHS * driver.model.vehicle.length_m);
+    let beyond = stations(path, beyond_m(driver));
     let pieces: Vec<Range<usize>> =
         stretches.iter().flat_map(|stretch| cut(stretch, stations(path, PIECE_M))).collect();
     let look = |piece: &Range<usize>| {
@@ -138,6 +137,11 @@ fn looked_at(
     };
     let looked = pieces.par_iter().map(look).collect::<Result<Vec<_>, Stopped>>()?;
     Ok(looked.into_iter().flatten().collect())
+}
+
+/// Road after which it no longer matters to the vehicle how it began, metres.
+fn beyond_m(driver: &Driver) -> f64 {
+    BEYOND_M + BEYOND_LENGTHS * driver.model.vehicle.length_m
 }
 
 /// A number of metres as stations.
@@ -161,7 +165,6 @@ fn worse<'r>(a: &'r SpanResult, b: &'r SpanResult) -> &'r SpanResult {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::assemble::RoutePart;
     use super::super::attested::Attested;
     use super::super::permits::Permits;
     use super::super::rungs::Rungs;

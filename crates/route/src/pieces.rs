@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::roads::Roads;
 use super::rungs::Rungs;
@@ -149,8 +149,8 @@ impl Menu {
         self.choose(&Choices::default());
     }
 
-    /// Makes the chosen paths of turns, given with the arcs between, on several threads. Turns that have no such path are left for
-    /// [`Self::chosen`].
+    /// Makes the chosen paths of turns, given with the arcs between, on several threads. [`Self::chosen`] then knows them. A turn that has no
+    /// path of the chosen code is left for it.
     ///
     /// # Errors
     /// `stop` was told.
@@ -169,7 +169,9 @@ impl Menu {
             let known = made.is_some_and(|made| code.map_or(made.paths.is_some(), |code| made.of_code(code).is_some()));
             (!known).then_some((key, movement, arcs, code))
         });
-        let wanted: Vec<_> = wanted.collect();
+        // A way may take a turn twice.
+        let mut seen = FxHashSet::default();
+        let wanted: Vec<_> = wanted.filter(|(key, ..)| seen.insert(*key)).collect();
         // All threads have the lines that the turns need.
         for (_, movement, arcs, _) in &wanted {
             for edge in [movement.from, movement.to].iter().chain(*arcs) {

@@ -27,7 +27,7 @@ const TURN_REACH_M: f64 = 120.0;
 const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
-/// How much of what is missing a road gets, after a look and after a certificate over the whole, which takes longest.
+/// How many times what is missing a road gets: after a look, and after a certificate of the whole way, which takes longest.
 const AFTER_LOOK: f64 = 2.0;
 const AFTER_CERTIFICATE: f64 = 8.0;
 /// How often what fails on one way is raised.
@@ -113,21 +113,24 @@ impl Whole {
                 Err(refutation) => (refutation, f32::MAX),
                 Ok(path) => {
                     judged = judge(&path, &judged, &self.driver, stop)?;
-                    let certified = if judged.safe() { self.certificate(&path, stop)? } else { None };
-                    let (refutation, share) = match certified {
-                        None => (worst(&judged.parts), AFTER_LOOK),
-                        Some((certificate, _)) if certificate.result.safe() => {
-                            return Ok(Ok(self.certified(path, certificate)));
+                    let looked_safe = judged.safe();
+                    let mut refutation = None;
+                    if looked_safe {
+                        let (certificate, of_parts) = self.certificate(&path, stop)?;
+                        match certificate {
+                            Some(certificate) if certificate.result.safe() => {
+                                return Ok(Ok(self.certified(path, certificate)));
+                            }
+                            certificate => refutation = certificate.map(|refuting| refuted(&path, Some(&refuting))),
                         }
-                        Some((certificate, of_parts)) => {
-                            judged.put(of_parts);
-                            (refuted(&path, Some(&certificate)), AFTER_CERTIFICATE)
-                        }
-                    };
-                    if self.raise(|rungs, network| rungs.raise_failing(network, &judged.parts, share)) {
+                        judged.put(of_parts);
+                    }
+                    let times = if looked_safe { AFTER_CERTIFICATE } else { AFTER_LOOK };
+                    if self.raise(|rungs, network| rungs.raise_failing(network, &judged.parts, times)) {
                         continue;
                     }
-                    if share < AFTER_CERTIFICATE {
+                    let refutation = refutation.unwrap_or_else(|| worst(&judged.parts));
+                    if !looked_safe {
                         return Ok(Err(refutation));
                     }
                     // What lies beside the place may be too narrow for the whole way.
@@ -239,14 +242,14 @@ impl Whole {
     ) -> Result<Option<CertifiedWay>, Stopped> {
         self.menu.choose(choices);
         let Ok(path) = self.joined(way, stop)? else { return Ok(None) };
-        let safe = self.certificate(&path, stop)?.filter(|(certificate, _)| certificate.result.safe());
-        Ok(safe.map(|(certificate, _)| self.certified(path, certificate)))
+        let safe = self.certificate(&path, stop)?.0.filter(|certificate| certificate.result.safe());
+        Ok(safe.map(|certificate| self.certified(path, certificate)))
     }
 
-    /// The certificate of a path over the whole, with the plan that is best for its parts, and their results.
-    fn certificate(&self, path: &RoutePath, stop: &Stop) -> Result<Option<(Certificate, Vec<SpanResult>)>, Stopped> {
+    /// The certificate of a path over the whole along the plan that is best for its parts, if all of these are safe, and their results.
+    fn certificate(&self, path: &RoutePath, stop: &Stop) -> Result<(Option<Certificate>, Vec<SpanResult>), Stopped> {
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
-        stet::certify_planned(&path.corridor, model, &parts(path), options, stop)
+        stet::certify_whole(&path.corridor, model, &parts(path), options, stop)
     }
 
     /// Chooses paths of turns, and of every other turn the best one.

@@ -100,7 +100,9 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
         // Over a turn it was stopped there; a way without turns went to its end.
         let asked = asked.load(Ordering::Relaxed);
         let told = stop.told().then_some(Unanswered::Stopped(Stopped));
-        assert_eq!((stopped_at, asked), (told, usize::from(stop.told())));
+        assert_eq!((stopped_at, asked > 0), (told, stop.told()));
+        // Each thread may have begun a turn before any told.
+        assert!(asked <= rayon::current_num_threads(), "{asked}");
         stopped += asked;
         // The same planner then answers as if it had not been stopped.
         assert!(planner.answer(&question, &Stop::never()).is_ok());

@@ -1,7 +1,7 @@
 //! The certificate (docs/proof.md): nominal motion → tubes → leeway → corrections → RSC.
 //!
-//! The module is pure: it takes a corridor and a vehicle and returns a certificate. It has no input or output, no threads,
-//! and no clock but that of the guard ([`netcert_base::watch`]).
+//! The module is pure: it takes a corridor and a vehicle and returns a certificate. It has no input or output
+//! and no clock but that of the guard ([`netcert_base::watch`]). No result depends on the number of threads.
 
 mod adjoint;
 mod area_corrections;
@@ -63,6 +63,7 @@ pub use tube::{Tube, tubes};
 use area_corrections::swept_as_one;
 use marks::Marks;
 use stretches::{best_swept, swept_by_stretches};
+use sweeps::Sweeps;
 
 /// Certifies vehicles over `spans` of stations. Each vehicle drives the whole corridor by itself, and each gets one
 /// row.
@@ -97,7 +98,7 @@ pub fn certify(
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
-/// The result of one vehicle for each span. Where all spans are safe, [`certify_planned`] says so, too. Where a span fails and several stretches
+/// The result of one vehicle for each span. Where all spans are safe, [`certify_planned`] and [`certify_whole`] say so, too. Where a span fails and several stretches
 /// were planned by themselves, one plan for all of them is not tried: on a long route it takes most of the time.
 ///
 /// # Errors
@@ -119,9 +120,35 @@ pub fn certify_parts(
     Ok(results)
 }
 
+/// Certifies a whole corridor along the plan that is best for `spans`, which are planned as in [`certify_planned`]. Returns the certificate,
+/// which is swept anew with the whole as its only span, and the result for each span. There is no certificate unless all spans are safe.
+///
+/// # Errors
+/// `stop` was told: each sweep asks it every few metres.
+pub fn certify_whole(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+    stop: &Stop,
+) -> Result<(Option<Certificate>, Vec<SpanResult>), Stopped> {
+    if corridor.is_empty() {
+        return Ok((None, Vec::new()));
+    }
+    let (sweeps, results) = best_swept(corridor, model, spans, Marks::Ends, options, stop);
+    let certificate = results.iter().all(SpanResult::safe).then(|| {
+        let whole = 0..corridor.len();
+        let plan = sweeps.plan;
+        Sweeps::along(corridor, model, std::slice::from_ref(&whole), Marks::All, stop, |_| plan).certificate(corridor).0
+    });
+    // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
+    stop.check()?;
+    Ok((certificate, results))
+}
+
 /// Certifies a whole corridor with the plan that [`certify_spans`] makes for `spans`, and returns the result for each
 /// span. These are the details of an edge's certificate. Between areas that are far apart, as on a route, each stretch is planned by
-/// itself.
+/// itself. The certificate's own result is the least over the spans; for a corridor of several spans see [`certify_whole`].
 ///
 /// `None` when the corridor has no station.
 ///

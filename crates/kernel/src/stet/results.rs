@@ -64,6 +64,20 @@ impl SpanResult {
         self.rsc_m.is_some_and(|rsc_m| rsc_m < 0.0)
     }
 
+    /// The result of two spans together: the lesser RSC with its place, the lesser margins, and the lesser γ. Leeway does not fall with γ.
+    #[must_use]
+    pub(super) fn and(self, other: &Self) -> Self {
+        let least = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.min(b));
+        let (rsc_m, hinge_margin_rad) =
+            (least(self.rsc_m, other.rsc_m), least(self.hinge_margin_rad, other.hinge_margin_rad));
+        let rsc_published_m = self.rsc_published_m.min(other.rsc_published_m);
+        let shrink = self.shrink.min(other.shrink);
+        let hinge_unit =
+            if other.hinge_margin_rad < self.hinge_margin_rad { other.hinge_unit } else { self.hinge_unit };
+        let limiting = if other.rsc_m < self.rsc_m { other.limiting } else { self.limiting };
+        Self { rsc_m, rsc_published_m, hinge_margin_rad, hinge_unit, shrink, limiting }
+    }
+
     /// The verdict of the numbers alone, without law and map.
     #[must_use]
     pub fn verdict(&self) -> Verdict {

@@ -10,6 +10,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::area_corrections::{safe, swept_as_one};
+use super::areas::FAR_OUTSIDE_M;
 use super::marks::Marks;
 use super::model::Model;
 use super::results::SpanResult;
@@ -23,8 +24,9 @@ use netcert_base::stop::Stop;
 const BEYOND_M: f64 = 16.0;
 /// How often places that refute a span are planned by themselves.
 const REPAIRS: usize = 3;
-/// How far such a place reaches beyond the span, and most of a span on either side of the place that belongs to it, metres.
+/// Road before and after such a place that is planned with it, metres.
 const AROUND_M: f64 = 60.0;
+/// Longest part of a span before and after its worst station that counts as the place, metres.
 const LONGEST_M: f64 = 150.0;
 
 /// Sweeps, with the results of their spans.
@@ -49,8 +51,9 @@ pub(super) fn best_swept<'m>(
         if all_safe(&best) || stop.told() {
             break;
         }
-        let repaired = stretches.swept(stretches.repaired(&best.0.plan, &best.1), marks);
-        if safe(&repaired.1) <= safe(&best.1) {
+        let Some(plan) = stretches.repaired(&best.0.plan, &best.1) else { break };
+        let repaired = stretches.swept(plan, marks);
+        if merit(&repaired.1) <= merit(&best.1) {
             break;
         }
         best = repaired;
@@ -60,6 +63,12 @@ pub(super) fn best_swept<'m>(
     }
     let whole = swept_as_one(corridor, model, spans, marks, options, stop);
     if safe(&best.1) > safe(&whole.1) { best } else { whole }
+}
+
+/// How good results are: how many spans are safe, and what the others lack together, as a negative number of metres.
+fn merit(results: &[SpanResult]) -> (usize, f64) {
+    let failing = results.iter().filter(|result| !result.safe());
+    (safe(results), failing.map(|result| result.rsc_m.unwrap_or(FAR_OUTSIDE_M).min(0.0)).sum())
 }
 
 /// The sweep along the plans of all stretches. `None` if there is one stretch only, or nothing is to be corrected.
@@ -161,24 +170,31 @@ impl<'c, 'm> Stretches<'c, 'm> {
     }
 
     /// A plan with other corrections near the places that refute a span: those of a stretch around each place, planned by itself, because one
-    /// round of corrections may suit another place of the same stretch. They fade into the plan.
-    fn repaired(&self, plan: &Plan, results: &[SpanResult]) -> Plan {
+    /// round of corrections may suit another place of the same stretch. They fade into the plan. `None` if no such place is known: that of a
+    /// hinge in a long span is not.
+    fn repaired(&self, plan: &Plan, results: &[SpanResult]) -> Option<Plan> {
         let (around, longest) = (self.stations(AROUND_M), self.stations(LONGEST_M));
         let mut places: Vec<Range<usize>> = Vec::new();
         for (span, result) in self.spans.iter().zip(results).filter(|(_, result)| !result.safe()) {
             let at = result.limiting.station;
-            let near = span.start.max(at.saturating_sub(longest))..span.end.min(at + longest);
+            let near = match () {
+                () if span.len() <= longest => span.clone(),
+                () if result.too_narrow() => span.start.max(at.saturating_sub(longest))..span.end.min(at + longest),
+                () => continue,
+            };
             let place = near.start.saturating_sub(around)..(near.end + around).min(self.corridor.len());
             match places.last_mut().filter(|last| place.start <= last.end) {
                 Some(last) => last.end = last.end.max(place.end),
-                None if place.start < place.end => places.push(place),
-                None => {}
+                None => places.push(place),
             }
+        }
+        if places.is_empty() {
+            return None;
         }
         let plans: Vec<StretchPlan> = places.into_par_iter().map(|place| self.plan(place, around)).collect();
         let fade = self.stations(BEYOND_M);
-        Plan::through(self.corridor.len(), |knot| {
-            let (at, station) = (knot + 1, KNOT_STATIONS * (knot + 1));
+        Some(Plan::through(self.corridor.len(), |knot| {
+            let (at, station) = (knot + 1, KNOT_STATIONS * knot);
             let metres = |coefficients: &[i32], at: usize| coefficients.get(at).map(|&c| f64::from(c) * STEP_M);
             plans.iter().fold(metres(&plan.coefficients, at).unwrap_or(0.0), |planned, place| {
                 let away = place.own.start.saturating_sub(station).max(station.saturating_sub(place.own.end));
@@ -187,7 +203,7 @@ impl<'c, 'm> Stretches<'c, 'm> {
                     at.checked_sub(place.slice.start / KNOT_STATIONS).and_then(|i| metres(&place.coefficients, i));
                 planned + own.map_or(0.0, |own| share * (own - planned))
             })
-        })
+        }))
     }
 }
 
@@ -215,7 +231,7 @@ mod tests {
 
     use super::*;
     use crate::stet::plane::tests::as_area;
-    use crate::stet::{certify_parts, certify_planned, certify_spans};
+    use crate::stet::{certify_parts, certify_plan, certify_planned, certify_spans, certify_whole};
 
     const SPACING_M: f64 = 0.5;
     const FIRST: Range<usize> = 120..420;
@@ -304,7 +320,7 @@ mod tests {
         let stretches = Stretches::planned(&corridor, &model, &bends, &options, &stop).unwrap();
         let (sweeps, joined) = stretches.swept(stretches.joined(), Marks::Ends);
         assert_eq!(joined.iter().map(SpanResult::safe).collect::<Vec<_>>(), [true, false, true, true]);
-        let plan = stretches.repaired(&sweeps.plan, &joined);
+        let plan = stretches.repaired(&sweeps.plan, &joined).unwrap();
         let (_, repaired) = stretches.swept(plan.clone(), Marks::Ends);
         assert_eq!(safe(&repaired), bends.len(), "{repaired:?}");
         // The plan is another one near that bend alone.
@@ -312,6 +328,34 @@ mod tests {
         let near = ((AROUND_M + BEYOND_M) / SPACING_M) as usize + 3 * KNOT_STATIONS;
         assert!(!apart.is_empty() && apart.iter().all(|k| (bends[1].start - near..bends[1].end + near).contains(k)));
         // Nothing is repaired where nothing fails.
-        assert_eq!(stretches.repaired(&plan, &repaired), plan);
+        assert_eq!(stretches.repaired(&plan, &repaired), None);
+    }
+
+    #[test]
+    fn what_a_whole_corridor_claims_is_no_more_than_any_of_its_spans_has() {
+        let model = Model::new(Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap()).unwrap();
+        let (options, stop) = (Options::default(), Stop::default());
+        let mut judged = [0; 2];
+        for narrow_m in [1.7, 2.1, 2.3, 2.5] {
+            // A bend, where bounds are loose, and far from it a straight with little room.
+            let bend = CurvatureProfile::new(SPACING_M).straight(120.0).clothoid(0.05, 8.0).arc(0.05, 14.0);
+            let profile = bend.clothoid(0.0, 8.0).straight(900.0);
+            let mut corridor = Corridor::from_curvature(SPACING_M, [3.0, 4.0], 1.0, &profile.curvature, 3.6, 3.6);
+            let last = corridor.len();
+            let narrow = last - 240..last - 120;
+            corridor.left_m[narrow.clone()].fill(narrow_m);
+            corridor.right_m[narrow.clone()].fill(narrow_m);
+            let spans = [0..600, 600..last - 400, last - 400..last - 60, last - 60..last];
+            let (certificate, results) = certify_planned(&corridor, &model, &spans, &options, &stop).unwrap().unwrap();
+            let least_m = results.iter().map(|result| result.rsc_m.unwrap()).fold(f64::INFINITY, f64::min);
+            assert!(certificate.result.rsc_m.unwrap() <= least_m, "{narrow_m}: {certificate:?} {results:?}");
+            let (whole, of_spans) = certify_whole(&corridor, &model, &spans, &options, &stop).unwrap();
+            judged[usize::from(whole.is_some())] += 1;
+            assert_eq!(whole.is_some(), of_spans.iter().all(SpanResult::safe));
+            let Some(whole) = whole else { continue };
+            assert!(whole.result.safe() && whole.result.rsc_m.unwrap() <= least_m + 1e-6, "{narrow_m}: {whole:?}");
+            assert_eq!(whole, certify_plan(&corridor, &model, &whole.shift).unwrap());
+        }
+        assert!(judged.iter().all(|&count| count > 0), "{judged:?}");
     }
 }

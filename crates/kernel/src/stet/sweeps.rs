@@ -223,7 +223,7 @@ impl<'m> Sweeps<'m> {
             (own_centred(&centred.left, &centred.mark_left), own_centred(&centred.right, &centred.mark_right));
         spans::lower_by_areas(track, [&mut left_centred_m, &mut right_centred_m], &centred);
         let certificate = Certificate {
-            result: self.result(&whole),
+            result: self.result_of_all(&whole),
             plan,
             shift_m,
             shift: self.plan.clone(),
@@ -298,6 +298,19 @@ impl<'m> Sweeps<'m> {
             }
             _ => at_full.result(),
         }
+    }
+
+    /// The result of the whole if it is the only span. Of several spans only some may have been swept with better bounds, so no result of
+    /// the whole rests on those: it is the least over the spans.
+    fn result_of_all(&self, whole: &Range<usize>) -> SpanResult {
+        let results = if let [only] = self.spans
+            && only == whole
+        {
+            Vec::new()
+        } else {
+            self.results()
+        };
+        results.into_iter().reduce(|a, b| a.and(&b)).unwrap_or_else(|| self.result(whole))
     }
 
     pub(super) fn results(&self) -> Vec<SpanResult> {
