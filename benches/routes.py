@@ -17,8 +17,9 @@ import subprocess
 import sys
 import time
 
-# So many pairs are drawn for each that is asked for.
-MOST_DRAWS = 50
+# So many pairs are drawn at most for each that is asked for, and so many without any answer end the run.
+MOST_DRAWS = 1000
+MOST_FAILED = 50
 MAIN = ("primary", "secondary", "tertiary", "trunk")
 
 
@@ -98,7 +99,7 @@ def main():
         if any(answer is None for answer, _ in of_each):
             for netcert, (answer, _) in zip(arguments.netcert, of_each, strict=True):
                 failed[netcert] += answer is None
-            if len(set(failed.values())) > 1 or sum(failed.values()) > MOST_DRAWS * len(failed):
+            if len(set(failed.values())) > 1 or sum(failed.values()) > MOST_FAILED * len(failed):
                 sys.exit(f"no answer, by program: {failed}; the last pair was {pair}")
             continue
         asked.append(pair)
