@@ -3,8 +3,9 @@
 
     benches/routes.py [--pairs N] [--seed S] REGION.gpkg VEHICLE NETCERT [NETCERT...] [-- ROUTE_OPTION...]
 
-The programs are asked in turn, pair after pair. A pair without any answer is left out; one that only some programs answer ends the run. A pair is two edges of main roads, 2 to 15 km apart in a straight line. Printed: the answers
-of each kind, conditions, metres of oncoming lanes, and seconds by the clock; then each pair on which the programs differ.
+A pair is two edges of main roads, 2 to 15 km apart in a straight line. The programs are asked in turn, pair after pair. A pair that none
+answers is left out. A pair that only some answer ends the run. Printed: the answers of each kind, conditions, metres of oncoming lanes, and
+seconds by the clock; then each pair on which the programs differ.
 """
 
 import argparse

@@ -117,11 +117,11 @@ impl Whole {
                     let mut refutation = None;
                     if looked_safe {
                         let (certificate, of_parts) = self.certificate(&path, stop)?;
-                        match certificate {
-                            Some(certificate) if certificate.result.safe() => {
+                        if let Some(certificate) = certificate {
+                            if certificate.result.safe() {
                                 return Ok(Ok(self.certified(path, certificate)));
                             }
-                            certificate => refutation = certificate.map(|refuting| refuted(&path, Some(&refuting))),
+                            refutation = Some(refuted(&path, Some(&certificate)));
                         }
                         judged.put(of_parts);
                     }

@@ -251,17 +251,7 @@ impl Arm {
         if end < first + 2 {
             return Err(UnknownReason::Geometry);
         }
-        let cut = |v: &[f64]| v[first..end].to_vec();
-        let mut window = Corridor {
-            spacing_m: c.spacing_m,
-            x: cut(&c.x),
-            y: cut(&c.y),
-            heading: cut(&c.heading),
-            curvature: cut(&c.curvature),
-            left_m: cut(&c.left_m),
-            right_m: cut(&c.right_m),
-            areas: Vec::new(),
-        };
+        let mut window = c.sliced(first..end);
         if line.made.frame != frame {
             carry_over(&mut window, line.made.frame, frame).ok_or(UnknownReason::Geometry)?;
         }
