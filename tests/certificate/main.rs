@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod areas;
+mod climbing_routes;
 mod corrcen;
 mod ends;
 mod errata;

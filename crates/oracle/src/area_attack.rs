@@ -22,6 +22,8 @@ const COARSE: SearchGrid = SearchGrid { stride: 5, pitch_m: 0.5 };
 /// Two places of one unit are the same attack if they are this close: steps, and metres on the body.
 const SAME_STEPS: usize = 10;
 const SAME_M: f64 = 0.4;
+/// Of the runs whose places are kept, so many steps make one.
+const SEEN_STRIDE: usize = 4;
 /// Most moments at which an edge of a unit is attacked.
 const LOWS: usize = 2;
 /// Errors of RK4 and of the plan's cubic, and what sampling leaves, metres.
@@ -123,6 +125,8 @@ pub struct AreaAttack<'a> {
     pub(crate) grounds: PathAreas,
     pub(crate) found: AreaAttackOutcome,
     pub(crate) scope: Scope,
+    /// Places of bodies on the runs that were measured, if they are kept.
+    pub(crate) seen: Option<Vec<V2>>,
 }
 
 impl<'a> AreaAttack<'a> {
@@ -130,7 +134,8 @@ impl<'a> AreaAttack<'a> {
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
         let attack = Attack::new(corridor, vehicle, path, shrink);
         let grounds = PathAreas::new(corridor, &attack.drive);
-        let mut areas = Self { attack, grounds, found: AreaAttackOutcome::default(), scope: Scope::whole() };
+        let mut areas =
+            Self { attack, grounds, found: AreaAttackOutcome::default(), scope: Scope::whole(), seen: None };
         areas.begin();
         areas
     }
@@ -266,6 +271,9 @@ impl<'a> AreaAttack<'a> {
         let drive = &self.attack.drive;
         let range = range.start.max(run.first).max(self.scope.steps.start)
             ..range.end.min(run.steps().end).min(self.scope.steps.end);
+        if let Some(seen) = &mut self.seen {
+            drive.body_sides(run, range.clone().step_by(SEEN_STRIDE), seen);
+        }
         if let Some(worst) = self.grounds.least(drive, run, range.clone())
             && self.found.least.is_none_or(|least| worst.room_m < least.room_m)
         {

@@ -307,15 +307,7 @@ impl<'a> Attack<'a> {
     pub fn driven(&self, draw: &mut Draw) -> Vec<V2> {
         let run = self.drive.whole(&self.noise(draw));
         let mut out = Vec::new();
-        for step in self.on_road().filter(|step| step % 4 == 0) {
-            let (guide, headings) = run.at(step);
-            for (i, unit) in self.drive.vehicle.units.iter().enumerate() {
-                for ahead_m in places(self.drive.vehicle, i, 1.0) {
-                    let side = |aside_m: f64| self.drive.body_point(guide, headings, i, ahead_m, aside_m);
-                    out.extend([side(0.5 * unit.width_m), side(-0.5 * unit.width_m)]);
-                }
-            }
-        }
+        self.drive.body_sides(&run, self.on_road().filter(|step| step % 4 == 0), &mut out);
         out
     }
 

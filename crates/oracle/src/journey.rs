@@ -4,7 +4,7 @@
 //! In areas it attacks as an attack on areas does. Elsewhere it pushes the body points with the least clearance over their nearer
 //! edge.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
@@ -15,7 +15,7 @@ use crate::attack::{Course, STEPS_PER_M};
 use crate::claim::Claim;
 use crate::draw::Draw;
 use crate::least_room::Stretch;
-use crate::path::{Path, along, left_of};
+use crate::path::{Path, V2, along, left_of};
 use crate::simulator::{Near, SearchGrid, SimulatedRun, sweep};
 
 /// The steps and body points that are searched for places to attack.
@@ -46,6 +46,16 @@ impl<'a> Journey<'a> {
         Self { areas: AreaAttack::new(corridor, vehicle, path, 1.0) }
     }
 
+    /// Keeps places of all bodies on the runs of the attacks that follow.
+    pub fn watch(&mut self) {
+        self.areas.seen = Some(Vec::new());
+    }
+
+    /// The places that were kept, metres in the corridor's frame.
+    pub fn seen(&mut self) -> Vec<V2> {
+        self.areas.seen.take().unwrap_or_default()
+    }
+
     /// Attacks the claim about the whole route: at the `places` worst places of every area and of every stretch between
     /// areas, then its hinges and with noise.
     pub fn attack_whole(&mut self, claim: &Claim, draw: &mut Draw, places: usize) -> AreaAttackOutcome {
@@ -70,6 +80,38 @@ impl<'a> Journey<'a> {
         self.begin(part.shrink, Scope { steps: steps.clone(), feet_m: part.from_m..=part.to_m });
         self.attack(steps, places);
         self.areas.found.clone()
+    }
+
+    /// Pushes bodies to one side (+1: left) where they are farthest on that side of the corridor's line, while their feet are on a stretch. Of
+    /// each unit one place is pushed.
+    pub fn push_aside(&mut self, feet_m: RangeInclusive<f64>, side: f64, shrink: f64) {
+        let AreaAttack { attack, .. } = &self.areas;
+        let vehicle = attack.drive.vehicle;
+        let front_m = vehicle.units[0].front_overhang_m;
+        let steps = self.step_at(feet_m.start() - 2.0 * front_m)..self.step_at(feet_m.end() + vehicle.length_m);
+        let mut farthest: Vec<Option<(f64, Near)>> = vec![None; vehicle.units.len()];
+        sweep(&attack.drive, &attack.nominal, &attack.road, steps.clone(), COARSE, |near| {
+            let (guide, headings) = attack.nominal.at(near.step);
+            let aside_m = near.side * 0.5 * vehicle.units[near.unit].width_m;
+            let place = attack.drive.body_point(guide, headings, near.unit, near.ahead_m, aside_m);
+            let left_m = attack.road.locate(place, near.foot_m).lateral_m;
+            let known = &mut farthest[near.unit];
+            if feet_m.contains(&near.foot_m) && known.is_none_or(|(most_m, _)| side * left_m > most_m) {
+                *known = Some((side * left_m, near));
+            }
+        });
+        let target = |(_, near): (f64, Near)| {
+            let (_, tangent) = attack.road.centre(near.foot_m);
+            let aside_m = near.side * 0.5 * vehicle.units[near.unit].width_m;
+            let push = along([0.0; 2], side, left_of(tangent));
+            PushTarget { step: near.step, unit: near.unit, ahead_m: near.ahead_m, aside_m, push }
+        };
+        let targets: Vec<PushTarget> = farthest.into_iter().flatten().map(target).collect();
+        self.begin(shrink, Scope { steps, feet_m });
+        for target in &targets {
+            self.push(target, Course::Exceeded);
+            self.push(target, Course::Kept);
+        }
     }
 
     fn begin(&mut self, shrink: f64, scope: Scope) {

@@ -158,6 +158,19 @@ impl<'a> SimulatedDrive<'a> {
         let u = direction(headings[unit]);
         along(along(self.axles(guide, headings)[unit], ahead_m, u), aside_m, left_of(u))
     }
+
+    /// Appends places along both sides of all bodies at these steps, at most a metre apart.
+    pub fn body_sides(&self, run: &SimulatedRun, steps: impl Iterator<Item = usize>, out: &mut Vec<V2>) {
+        for step in steps {
+            let (guide, headings) = run.at(step);
+            for (i, unit) in self.vehicle.units.iter().enumerate() {
+                for ahead_m in places(self.vehicle, i, 1.0) {
+                    let side = |aside_m: f64| self.body_point(guide, headings, i, ahead_m, aside_m);
+                    out.extend([side(0.5 * unit.width_m), side(-0.5 * unit.width_m)]);
+                }
+            }
+        }
+    }
 }
 
 fn moved(state: &PerUnit, h: f64, rate: &PerUnit) -> PerUnit {

@@ -12,7 +12,7 @@ use super::obstacles::Refutation;
 use super::pieces::{Choices, Menu, Strokes, Turns};
 use super::roads::Roads;
 use super::rungs::Rungs;
-use super::strip_use::StripUse;
+use super::strip_use::{CertifiedPath, StripUse};
 use super::turn_ends::TurnEnds;
 use crate::corridor::Corridor;
 use crate::network::{EdgeNo, MovementKind, Network, offset_m};
@@ -119,7 +119,7 @@ impl Whole {
                         let (certificate, of_parts) = self.certificate(&path, stop)?;
                         if let Some(certificate) = certificate {
                             if certificate.result.safe() {
-                                return Ok(Ok(self.certified(path, certificate)));
+                                return Ok(Ok(self.certified(path, certificate, stop)?));
                             }
                             refutation = Some(refuted(&path, Some(&certificate)));
                         }
@@ -243,7 +243,7 @@ impl Whole {
         self.menu.choose(choices);
         let Ok(path) = self.joined(way, stop)? else { return Ok(None) };
         let safe = self.certificate(&path, stop)?.0.filter(|certificate| certificate.result.safe());
-        Ok(safe.map(|certificate| self.certified(path, certificate)))
+        safe.map(|certificate| self.certified(path, certificate, stop)).transpose()
     }
 
     /// The certificate of a path over the whole along the plan that is best for its parts, if all of these are safe, and their results.
@@ -313,14 +313,15 @@ impl Whole {
     fn certify_path(&mut self, path: RoutePath, stop: &Stop) -> Result<Result<CertifiedWay, Refutation>, Stopped> {
         let certificate = stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, stop)?;
         Ok(match certificate {
-            Some(certificate) if certificate.result.safe() => Ok(self.certified(path, certificate)),
+            Some(certificate) if certificate.result.safe() => Ok(self.certified(path, certificate, stop)?),
             certificate => Err(refuted(&path, certificate.as_ref())),
         })
     }
 
-    fn certified(&mut self, path: RoutePath, certificate: Certificate) -> CertifiedWay {
-        let uses = StripUse::all(&mut self.strokes, &path, &certificate, &self.driver.model.vehicle);
-        CertifiedWay { path, certificate, uses }
+    fn certified(&mut self, path: RoutePath, certificate: Certificate, stop: &Stop) -> Result<CertifiedWay, Stopped> {
+        let of = CertifiedPath { path: &path, certificate: &certificate, model: &self.driver.model };
+        let uses = StripUse::all(&mut self.strokes, of, stop)?;
+        Ok(CertifiedWay { path, certificate, uses })
     }
 }
 

@@ -4,11 +4,13 @@
 //! not test whether the plan is good or within [`super::Options::max_shift_m`]. A plan too far off the centreline has a
 //! negative RSC.
 
+use std::ops::Range;
+
 use thiserror::Error;
 
 use super::marks::Marks;
 use super::model::Model;
-use super::results::Certificate;
+use super::results::{Certificate, SpanResult};
 use super::shift::{Plan, STEP_M, count};
 use super::sweeps::Sweeps;
 use netcert_base::corridor::Corridor;
@@ -62,6 +64,22 @@ pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<C
     let never = Stop::default();
     let sweeps = Sweeps::along(corridor, model, spans, Marks::All, &never, |_| plan.clone());
     Ok(sweeps.certificate(corridor).0)
+}
+
+/// As [`certify_plan`], but only the result for each span. Only the sweeps of blocks are made in which the vehicle may touch a span.
+///
+/// # Errors
+/// [`PlanError`] if the plan does not fit this corridor. `stop` is asked every few metres of a sweep; once it is told, the results mean
+/// nothing.
+pub fn certify_plan_spans(
+    corridor: &Corridor,
+    model: &Model,
+    plan: &Plan,
+    spans: &[Range<usize>],
+    stop: &Stop,
+) -> Result<Vec<SpanResult>, PlanError> {
+    check(corridor.len(), plan)?;
+    Ok(Sweeps::along(corridor, model, spans, Marks::Ends, stop, |_| plan.clone()).results())
 }
 
 fn check(stations: usize, plan: &Plan) -> Result<(), PlanError> {

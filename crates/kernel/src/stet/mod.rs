@@ -52,7 +52,7 @@ pub use netcert_base::leeway::known_m;
 pub use areas::Grounds;
 pub use cases::{Case, certify_cases};
 pub use course::Course;
-pub use external_plan::{PlanError, certify_plan};
+pub use external_plan::{PlanError, certify_plan, certify_plan_spans};
 pub use fading::fading_m;
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
