@@ -67,6 +67,7 @@ struct Beyond {
 }
 
 /// A certified path with what its uses follow from.
+#[derive(Clone, Copy)]
 pub(super) struct CertifiedPath<'p> {
     pub(super) path: &'p RoutePath,
     pub(super) certificate: &'p Certificate,
