@@ -117,6 +117,8 @@ pub struct Certificate {
     pub left_m: Vec<f64>,
     /// As `left_m`, on the right.
     pub right_m: Vec<f64>,
+    /// Leeway against half-widths alone, on the left and on the right, as `left_m` otherwise: areas do not lower it.
+    pub strip_leeway_m: [Vec<f64>; 2],
     /// As `left_m`, before correction.
     pub left_centred_m: Vec<f64>,
     /// As `right_m`, before correction.

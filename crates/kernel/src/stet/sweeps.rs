@@ -218,6 +218,7 @@ impl<'m> Sweeps<'m> {
             left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
             right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
         }
+        let strip_leeway_m = [left_m.clone(), right_m.clone()];
         spans::lower_by_areas(track, [&mut left_m, &mut right_m], self.best(&whole));
         let (mut left_centred_m, mut right_centred_m) =
             (own_centred(&centred.left, &centred.mark_left), own_centred(&centred.right, &centred.mark_right));
@@ -229,6 +230,7 @@ impl<'m> Sweeps<'m> {
             shift: self.plan.clone(),
             left_m,
             right_m,
+            strip_leeway_m,
             left_centred_m,
             right_centred_m,
         };

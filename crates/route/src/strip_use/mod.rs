@@ -165,13 +165,14 @@ impl StripUse {
     }
 }
 
-/// The least leeway of bodies at a station, `[left, right]`, metres; not below the route's RSC. `None` on a side that no body passes.
+/// The least leeway of bodies at a station against half-widths, `[left, right]`, metres; not below the route's RSC. `None` on a side that no
+/// body passes.
 fn leeways(certificate: &Certificate, k: usize) -> [Option<f64>; 2] {
     let rsc_m = certificate.result.rsc_m.unwrap_or(0.0);
     // Where the bounds do not close at γ = 1, they do at the route's γ, with the route's RSC.
     let closes = |m: &f64| if *m <= 0.5 * NOTHING_M { rsc_m } else { *m };
-    [&certificate.left_m, &certificate.right_m]
-        .map(|column| column.get(k).map(closes).and_then(known_m).map(|m| m.max(rsc_m)))
+    let [left_m, right_m] = &certificate.strip_leeway_m;
+    [left_m, right_m].map(|column| column.get(k).map(closes).and_then(known_m).map(|m| m.max(rsc_m)))
 }
 
 /// How far bodies stand beyond a strip at a station. `reach` says how far they may be to the left and right of the route's line at a station,

@@ -47,7 +47,7 @@ pub(super) fn turn_reach(
     stop: &Stop,
 ) -> Result<Vec<TurnReach>, Stopped> {
     let mut cuts = Cuts::new(corridor, strips, windows);
-    if cuts.strips.iter().all(Option::is_none) {
+    if !cuts.any() {
         return Ok(cuts.kept);
     }
     let reach = BodyReach::of(&model.vehicle, corridor.spacing_m);
@@ -76,8 +76,10 @@ pub(super) fn turn_reach(
 
 /// What is cut away, by station of the route.
 struct Cuts {
-    /// The strips at stations beside turns, on which something can be cut.
+    /// The strips at stations beside turns. `None` elsewhere, and where nothing may be cut.
     strips: Vec<Option<StationStrips>>,
+    /// Whether nothing may be cut on the road at a station or beside it.
+    whole: Vec<bool>,
     /// What is kept on each side, metres from the line. `None`: nothing is cut.
     kept: Vec<TurnReach>,
 }
@@ -85,16 +87,27 @@ struct Cuts {
 impl Cuts {
     fn new(corridor: &Corridor, parts: &[&PartStrips], windows: &[AreaWindow]) -> Self {
         let mut strips = vec![None; corridor.len()];
+        let mut whole = vec![false; corridor.len()];
         for part in parts {
             for window in windows {
                 let (own, near) = (&part.stations, &window.stations);
                 for k in own.start.max(near.start)..own.end.min(near.end) {
-                    strips[k] =
-                        part.at(k).filter(|strips| !strips.has_surface && (0..2).any(|side| cuttable(strips, side)));
+                    strips[k] = part.at(k).filter(|strips| !strips.has_surface);
+                    if strips[k].is_none() {
+                        whole[k.saturating_sub(1)..(k + 2).min(corridor.len())].fill(true);
+                    }
                 }
             }
         }
-        Self { strips, kept: vec![[None; 2]; corridor.len()] }
+        Self { strips, whole, kept: vec![[None; 2]; corridor.len()] }
+    }
+
+    /// Whether some turn may use more than the lane.
+    fn any(&self) -> bool {
+        self.strips
+            .iter()
+            .flatten()
+            .any(|strips| (0..2).any(|side| strips.turn[side] - strips.lane[side] > LEAST_CUT_M))
     }
 
     /// How far nominal bodies come to each side of the line at each station, metres, while all of them are within the strips.
@@ -113,7 +126,7 @@ impl Cuts {
             let end = (window.stations.end + reach.behind).min(heads.len());
             heads[window.stations.start.min(end)..end].fill(true);
         }
-        let mut out = vec![[f64::NEG_INFINITY; 2]; corridor.len()];
+        let mut out = vec![[f64::MIN; 2]; corridor.len()];
         // The path has one vertex before the first station.
         for (head, poses) in poses.iter().skip(1).enumerate().filter(|(head, _)| heads[*head]) {
             let near = reach.around(&(head..head + 1), corridor.len());
@@ -150,7 +163,8 @@ impl Cuts {
             let room_m = near.map(|(_, room_m)| *room_m).fold(0.0, f64::max);
             self.kept[k] = [0, 1].map(|side| {
                 let needed_m = (nominal[k][side] + room_m).max(strips.lane[side]);
-                (needed_m.is_finite() && needed_m < strips.turn[side] - LEAST_CUT_M).then_some(needed_m)
+                let cut = !self.whole[k] && needed_m < strips.turn[side] - LEAST_CUT_M;
+                cut.then_some(needed_m)
             });
         }
     }
@@ -189,11 +203,6 @@ impl Cuts {
         }
         geo::unary_union(&pieces)
     }
-}
-
-/// Whether a strip that a turn may use reaches beyond the lane on a side.
-fn cuttable(strips: &StationStrips, side: usize) -> bool {
-    strips.turn[side] - strips.lane[side] > LEAST_CUT_M
 }
 
 /// The plan with straight road before and after it.
