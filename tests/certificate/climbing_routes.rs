@@ -310,9 +310,10 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn no_body_stands_farther_beyond_its_lane_than_a_climbing_route_says() {
-    let (towns, each) = thorough::cases((3, 3), (170, 8));
+    // In the last of the few towns a route has two turns so close that the areas of both count at the second one.
+    let (towns, each) = thorough::cases((vec![0, 1, 65], 4), ((0..170).collect(), 8));
     let all: Vec<Found> =
-        (0..towns).into_par_iter().flat_map_iter(|town| besieged(0x00c1_1b00 + 1000 * town, each)).collect();
+        towns.par_iter().flat_map_iter(|town: &u64| besieged(0x00c1_1b00 + 1000 * town, each)).collect();
     let climbing = all.iter().filter(|found| found.climbs).count();
     let km = 1e-3 * all.iter().map(|found| found.length_m).sum::<f64>();
     println!("{} routes, {climbing} beyond their lanes, {km:.1} km", all.len());
@@ -328,7 +329,7 @@ fn no_body_stands_farther_beyond_its_lane_than_a_climbing_route_says() {
     }
     let broken: Vec<&str> = all.iter().flat_map(|found| &found.broken).map(String::as_str).collect();
     assert!(broken.is_empty(), "{} claims refuted:\n{}", broken.len(), broken.join("\n"));
-    assert!(climbing >= towns as usize, "only {climbing} routes climb");
+    assert!(climbing >= towns.len(), "only {climbing} routes climb");
     // The bounds are no empty ones: on roads an attack comes near them.
     let near = |used: &&(UsePlace, f64, f64)| used.0 == UsePlace::Road && used.1 - used.2 < 0.3;
     assert!(all.iter().flat_map(|found| &found.uses).filter(near).count() > 0);

@@ -20,7 +20,7 @@ use crate::stet::{Certificate, Model, Side, known_m};
 use crate::stop::{Stop, Stopped};
 use strips::{PartStrips, StationStrips};
 use turn_reach::turn_reach;
-use windows::{BodyReach, turn_windows};
+use windows::{BodyReach, area_windows};
 
 /// What stands beyond a strip by less than this counts as inside, metres.
 const LEAST_M: f64 = 0.01;
@@ -81,7 +81,7 @@ impl StripUse {
     /// `stop` was told.
     pub(super) fn all(strokes: &mut Strokes, of: CertifiedPath<'_>, stop: &Stop) -> Result<Vec<Self>, Stopped> {
         let CertifiedPath { path, certificate, model } = of;
-        let windows = turn_windows(path, BodyReach::of(&model.vehicle, path.corridor.spacing_m));
+        let windows = area_windows(path, BodyReach::of(&model.vehicle, path.corridor.spacing_m));
         let edges = path.parts.iter().filter_map(|part| match part.kind {
             PartKind::Edge(edge) => Some((part, edge)),
             PartKind::Turn { .. } => None,
@@ -105,8 +105,9 @@ impl StripUse {
                     None => [0, 1].map(|side| Some(strips.corridor[side] - leeways[side]?)),
                 });
                 let Some(beyond) = beyond else { continue };
-                let (uses, at) = window.map_or((&mut all, part.kind), |window| (&mut beside, window.at));
-                let found = Self::at_station(path, at, k, beyond, window.is_some());
+                let turn = window.map(|window| window.at).filter(|at| matches!(at, PartKind::Turn { .. }));
+                let uses = if turn.is_some() { &mut beside } else { &mut all };
+                let found = Self::at_station(path, turn.unwrap_or(part.kind), k, beyond);
                 match uses.last_mut() {
                     Some(last) if last.goes_on_with(&found) => last.join(&found),
                     _ => uses.push(found),
@@ -118,12 +119,12 @@ impl StripUse {
         Ok(all)
     }
 
-    fn at_station(path: &RoutePath, at: PartKind, k: usize, beyond: Beyond, beside_turn: bool) -> Self {
+    fn at_station(path: &RoutePath, at: PartKind, k: usize, beyond: Beyond) -> Self {
         let spacing_m = path.corridor.spacing_m;
         let last_m = (path.corridor.len() - 1) as f64 * spacing_m;
         Self {
             strip: beyond.strip,
-            place: if beside_turn { UsePlace::Turn } else { UsePlace::Road },
+            place: if matches!(at, PartKind::Turn { .. }) { UsePlace::Turn } else { UsePlace::Road },
             at,
             from_m: ((k as f64 - 1.0) * spacing_m).max(0.0),
             to_m: ((k as f64 + 1.0) * spacing_m).min(last_m),

@@ -1,8 +1,9 @@
-//! The stations of a path near its turns, where a junction's area counts instead of half-widths.
+//! The stations of a path at which bodies may be held against areas instead of half-widths.
 
 use std::ops::Range;
 
 use super::super::assemble::{PartKind, RoutePart, RoutePath};
+use crate::network::EdgeNo;
 use crate::vehicle::Vehicle;
 
 /// The feet of a vehicle's bodies lie at most so many lengths of the vehicle behind its front.
@@ -12,7 +13,7 @@ const BEHIND: f64 = 2.0;
 pub(super) struct AreaWindow {
     /// The stations at which a body may be meanwhile.
     pub(super) stations: Range<usize>,
-    /// The turn that the area belongs to.
+    /// The turn that the area belongs to, or an edge if the area belongs to no turn.
     pub(super) at: PartKind,
 }
 
@@ -38,16 +39,24 @@ impl BodyReach {
     }
 }
 
-/// The stations near the turns of a path. An area that belongs to no turn is the straight road beyond the path's ends, which is as wide as
-/// the path is there.
-pub(super) fn turn_windows(path: &RoutePath, reach: BodyReach) -> Vec<AreaWindow> {
+/// The stations of bodies that may be held against areas: those of each turn, and those of each area that belongs to no turn (the straight road
+/// beyond the path's ends). Where turns follow each other closely several areas count at a turn, and its window holds the stations of all.
+pub(super) fn area_windows(path: &RoutePath, reach: BodyReach) -> Vec<AreaWindow> {
     let corridor = &path.corridor;
-    let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
-    let window = |part: &RoutePart| {
-        let of_turn = |heads: &Range<usize>| heads.start <= part.stations.start && heads.end >= part.stations.end;
-        let heads = corridor.areas.iter().map(|span| span.heads.clone()).find(of_turn);
-        let heads = heads.unwrap_or_else(|| part.stations.clone());
+    let holds =
+        |heads: &Range<usize>, part: &RoutePart| heads.start <= part.stations.start && heads.end >= part.stations.end;
+    let turns = || path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
+    let of_turn = |part: &RoutePart| {
+        let heads = corridor.areas.iter().map(|span| &span.heads).filter(|heads| holds(heads, part));
+        let heads = heads.fold(part.stations.clone(), |all, heads| all.start.min(heads.start)..all.end.max(heads.end));
         AreaWindow { stations: reach.around(&heads, corridor.len()), at: part.kind }
     };
-    turns.map(window).collect()
+    let alone = |heads: &&Range<usize>| !turns().any(|part| holds(heads, part));
+    let of_area = |heads: &Range<usize>| {
+        let part = path.parts.iter().find(|part| part.stations.end > heads.start);
+        let at = part.map_or(PartKind::Edge(EdgeNo::new(0)), |part| part.kind);
+        AreaWindow { stations: reach.around(heads, corridor.len()), at }
+    };
+    let alone = corridor.areas.iter().map(|span| &span.heads).filter(alone).map(of_area);
+    turns().map(of_turn).chain(alone).collect()
 }
