@@ -42,6 +42,12 @@ fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -
     out.lines().last().unwrap_or_default().to_owned()
 }
 
+/// Runs a script with files of the place, and returns the JSON that it prints.
+pub(crate) fn run_on(python: &Path, script: &str, place: &WorkFolder, files: &[&str]) -> Value {
+    let line = said(python, script, files.iter().map(|name| place.path(name)));
+    serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
+}
+
 /// Runs a script with the drawn region and files of the place, and returns the JSON that it prints.
 fn run(python: &Path, script: &str, place: &WorkFolder, arguments: &[&str]) -> Value {
     let argument = |name: &&str| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) };

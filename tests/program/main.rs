@@ -22,6 +22,7 @@ mod export;
 mod export_engines;
 mod export_evidence;
 mod export_formats;
+mod export_wider;
 mod facade;
 mod geopackage;
 mod gis;

@@ -16,6 +16,7 @@
 //! | `source` | rows from the database, each with its permit |
 //! | `corners` | edges before a refused corner of a road |
 //! | `sequences` | sequences of permitted edges that may not be driven |
+//! | `wider` | where permits use more than the own lane, and what that costs |
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `destination` | the output: a file, a folder or a stream |
 //! | `unfinished` | what to remove if the program is stopped |
@@ -49,6 +50,7 @@ mod sequences;
 mod source;
 mod unfinished;
 mod ways;
+mod wider;
 
 pub use ask::Ask;
 pub use destination::{Destination, Layout, Out, Sink};

@@ -90,6 +90,19 @@ impl RungPrices {
         }
     }
 
+    /// What is added to the cost of an edge of this class that uses this strip, as a share of that cost.
+    #[must_use]
+    pub fn share(&self, strip: Policy, class: RoadClass) -> f64 {
+        let shares = self.of(strip).map(|price| price.share).into_iter().flatten();
+        RoadClass::ALL.iter().zip(shares).find(|(of, _)| **of == class).map_or(0.0, |(_, share)| share)
+    }
+
+    /// What is added to a turn that uses this strip, seconds.
+    #[must_use]
+    pub fn turn_s(&self, strip: Policy) -> f64 {
+        self.of(strip).map_or(0.0, |price| 1e-3 * price.turn_ms as f64)
+    }
+
     /// Adds to an access what it costs to climb. What is barred stays barred.
     pub(super) fn add(&self, access: &mut Access, graph: &Graph, rungs: &Rungs, measure: Measure) {
         if rungs.is_level() {
@@ -97,11 +110,8 @@ impl RungPrices {
         }
         let network = graph.network();
         for (no, slot) in EdgeNo::all().zip(&mut access.edges) {
-            let price = self.of(rungs.edge(no)).zip(network.edges.get(no.index()));
-            if let Some((price, edge)) = price.filter(|_| *slot != BARRED) {
-                let class = network.road(edge).class;
-                let share = RoadClass::ALL.iter().zip(price.share).find(|(of, _)| **of == class);
-                let more = share.map_or(0.0, |(_, share)| share) * graph.cost(no) as f64;
+            if let Some(edge) = network.edges.get(no.index()).filter(|_| *slot != BARRED) {
+                let more = self.share(rungs.edge(no), network.road(edge).class) * graph.cost(no) as f64;
                 *slot = slot.saturating_add(more.ceil() as u64);
             }
         }

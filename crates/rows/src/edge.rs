@@ -1,10 +1,11 @@
 //! Rows of edges: with certificates, with all facts from the map, and with the facts that a permit depends on.
 
 use crate::osm::LonLat;
-use crate::osm::facts::{Oneway, Permission, Policy, WidthSource};
+use crate::osm::facts::{Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 
+use super::EdgeNo;
 use super::cell::ColumnKind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 use super::certificate::CertificateRow;
@@ -150,4 +151,15 @@ pub struct EdgeStep {
     pub rsc_m: Option<f64>,
     /// The source of the width under the query's policy.
     pub width_source: Option<WidthSource>,
+}
+
+/// The narrowest strip on which an edge is safe, and what its driving time depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct EdgeRung {
+    pub edge: EdgeNo,
+    pub uses: Policy,
+    pub class: RoadClass,
+    pub link: bool,
+    pub maxspeed_kmh: Option<u8>,
 }

@@ -32,7 +32,7 @@ pub use bounds::Bounds;
 pub use cell::{Cell, Column, ColumnKind};
 pub use certificate::CertificateRow;
 pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, StripCount, TurnCount, TurnStripCount};
-pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
+pub use edge::{EdgeFacts, EdgeRow, EdgeRung, EdgeStep};
 pub use key::{EdgeKey, RoadName, TurnKey};
 pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;

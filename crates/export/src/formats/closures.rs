@@ -1,14 +1,16 @@
-//! Small rectangles across refused roads, for engines that avoid areas.
+//! Small rectangles across refused roads, for engines that avoid areas, and across roads on which the vehicle needs more than its own lane.
 //!
 //! Every refused stretch between two junctions gets one rectangle, on its longest straight, so that the rectangle meets no other
 //! road. An area has no direction, so a stretch that is refused in one direction is closed in both. An area cannot express a turn. A
-//! stretch that leads only to a refused corner of the road is closed instead.
+//! stretch that leads only to a refused corner of the road is closed instead. Of a stretch with two directions that cost different, the dearer one
+//! counts.
 
 use std::io::{self, Write};
 
 use super::geojson::position;
 use crate::osm::LonLat;
 use crate::rows::EdgeNo;
+use crate::wider::{Wider, WiderRoad};
 use crate::{ExportError, Source};
 
 /// Half the rectangle's size across the road, metres. Engines move lines by half a metre when they simplify them (GraphHopper:
@@ -42,18 +44,31 @@ impl Closed {
     }
 }
 
-/// Calls `put` with the rectangle of every refused stretch, in order of the network.
+/// What a rectangle stands across.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Across {
+    /// A stretch that is closed.
+    Closed,
+    /// A stretch that is open and uses more than the own lane.
+    Wider(WiderRoad),
+}
+
+/// Calls `put` with the rectangle of every stretch that is refused or uses more than the own lane, in order of the network.
 pub(super) fn each(
     source: &Source<'_>,
-    mut put: impl FnMut(&ClosureRing) -> Result<(), ExportError>,
+    wider: &Wider,
+    mut put: impl FnMut(Across, &ClosureRing) -> Result<(), ExportError>,
 ) -> Result<Closed, ExportError> {
     let mut closed = Closed::default();
     let mut last: Option<Stretch> = None;
     let mut end = |stretch: Stretch| -> Result<(), ExportError> {
-        if let (true, Some(ring)) = (stretch.refused, across(&stretch.line)) {
+        let Some(ring) = across(&stretch.line) else { return Ok(()) };
+        if stretch.refused {
             closed.stretches += 1;
             closed.too_much += u64::from(stretch.permitted);
-            put(&ring)?;
+            put(Across::Closed, &ring)?;
+        } else if let Some(road) = stretch.wider {
+            put(Across::Wider(road), &ring)?;
         }
         Ok(())
     };
@@ -70,9 +85,11 @@ pub(super) fn each(
         {
             stretch.refused |= refused;
             stretch.permitted |= permitted;
+            stretch.wider = dearer(stretch.wider, wider.edge(index));
             continue;
         }
-        let stretch = Stretch { way_id: edge.row.edge.way_id, line: edge.row.line, refused, permitted };
+        let (way_id, wider) = (edge.row.edge.way_id, wider.edge(index));
+        let stretch = Stretch { way_id, line: edge.row.line, refused, permitted, wider };
         if let Some(done) = last.replace(stretch) {
             end(done)?;
         }
@@ -86,6 +103,11 @@ struct Stretch {
     line: Vec<LonLat>,
     refused: bool,
     permitted: bool,
+    wider: Option<WiderRoad>,
+}
+
+fn dearer(a: Option<WiderRoad>, b: Option<WiderRoad>) -> Option<WiderRoad> {
+    a.into_iter().chain(b).max_by(|a, b| a.factor.total_cmp(&b.factor))
 }
 
 /// The coordinates of a `Polygon`.

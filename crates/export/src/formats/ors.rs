@@ -3,6 +3,7 @@
 //! | file | for |
 //! | --- | --- |
 //! | `avoid_polygons.json` | `options.avoid_polygons` of a request; any instance takes it |
+//! | `avoid_oncoming_lane.json` | the same with the roads on which the vehicle needs the oncoming lane; only if the database knows where it does not |
 //! | `match.json` | the body of a request to `/v2/match/PROFILE`: openrouteservice answers with the numbers of its edges |
 //! | `feature_map.jq` | turns that answer into rows of the table `feature_map`, which an instance with dynamic data reads |
 //!
@@ -11,9 +12,10 @@
 
 use std::io::Write as _;
 
-use super::closures::{self, polygon};
+use super::closures::{self, Across, ClosureRing, polygon};
 use super::{Options, Target};
-use crate::{Destination, ExportError, Layout, Source};
+use crate::osm::facts::Policy;
+use crate::{Destination, ExportError, Layout, Sink, Source};
 
 /// `ors`
 pub(super) struct Ors;
@@ -43,14 +45,22 @@ impl Target for Ors {
     }
 
     fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
-        let mut avoid = destination.create("avoid_polygons.json")?;
+        let mut avoid = MultiPolygon::create(destination, "avoid_polygons.json")?;
+        let wider = source.wider()?;
+        let oncoming = wider.known().then(|| MultiPolygon::create(destination, "avoid_oncoming_lane.json"));
+        let mut oncoming = oncoming.transpose()?;
         let mut features = destination.create("match.json")?;
-        avoid.write_all(b"{\"type\":\"MultiPolygon\",\"coordinates\":[")?;
         features.write_all(b"{\"key\":\"netcert\",\"features\":{\"type\":\"FeatureCollection\",\"features\":[")?;
         let mut between = "\n";
-        let closed = closures::each(source, |ring| {
-            avoid.write_all(between.as_bytes())?;
-            polygon(&mut avoid, ring)?;
+        let closed = closures::each(source, &wider, |across, ring| {
+            let on_oncoming_lane = matches!(across, Across::Wider(road) if road.strip == Policy::Carriageway);
+            if let Some(oncoming) = oncoming.as_mut().filter(|_| across == Across::Closed || on_oncoming_lane) {
+                oncoming.put(ring)?;
+            }
+            if across != Across::Closed {
+                return Ok(());
+            }
+            avoid.put(ring)?;
             write!(features, "{between}{{\"type\":\"Feature\",\"properties\":{{\"type\":\"refused\"}},\"geometry\":")?;
             features.write_all(b"{\"type\":\"Polygon\",\"coordinates\":")?;
             polygon(&mut features, ring)?;
@@ -58,12 +68,37 @@ impl Target for Ors {
             between = ",\n";
             Ok(())
         })?;
-        avoid.write_all(b"\n]}\n")?;
         features.write_all(b"\n]}}\n")?;
-        avoid.close()?;
         features.close()?;
+        avoid.close()?;
+        oncoming.map_or(Ok(()), MultiPolygon::close)?;
         destination.write_whole("feature_map.jq", FEATURE_MAP.as_bytes())?;
         source.reporter.note(&closed.note());
         Ok(())
+    }
+}
+
+/// A file with one area of many rectangles.
+struct MultiPolygon {
+    sink: Sink,
+    between: &'static str,
+}
+
+impl MultiPolygon {
+    fn create(destination: &mut Destination, name: &str) -> Result<Self, ExportError> {
+        let mut sink = destination.create(name)?;
+        sink.write_all(b"{\"type\":\"MultiPolygon\",\"coordinates\":[")?;
+        Ok(Self { sink, between: "\n" })
+    }
+
+    fn put(&mut self, ring: &ClosureRing) -> Result<(), ExportError> {
+        self.sink.write_all(self.between.as_bytes())?;
+        self.between = ",\n";
+        Ok(polygon(&mut self.sink, ring)?)
+    }
+
+    fn close(mut self) -> Result<(), ExportError> {
+        self.sink.write_all(b"\n]}\n")?;
+        self.sink.close()
     }
 }

@@ -5,6 +5,7 @@
 //! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … for each of them, too |
 //! | a road that is not in the network | the tags of a road with both directions refused |
 //! | a direction that is permitted | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
+//! | the strip that the vehicle needs there, if the database knows where a narrower one would do | `netcert:uses:forward=carriageway`, `netcert:cost:forward=4` (so many times its time), … |
 //! | a limit with a unit, a limit of a node on the road | a number in metres or tonnes on the road (`limits.rs`) |
 //! | a restriction with several `from` or `to` | a restriction for each pair of them |
 //! | a turn or passage that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…`; for Valhalla `restriction=no_…`, of turns both |

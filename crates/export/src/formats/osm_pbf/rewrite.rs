@@ -13,7 +13,9 @@ use super::tags::{StretchPermits, Tag, with_permits};
 use super::{FIRST_NEW_ID, Flavour};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
+use crate::rows::EdgeNo;
 use crate::ways::{OnWay, WayEdges, WayStretch, check_ids, ids};
+use crate::wider::Wider;
 use crate::{Destination, ExportError, Sink, Source};
 
 /// An engine may take a way with one of these keys for a road.
@@ -31,6 +33,7 @@ pub(in crate::formats) fn rewrite(
         source,
         flavour,
         refusals: Refusals::create(source, flavour, destination)?,
+        wider: source.wider()?,
         limits: NodeLimits::default(),
         splits: WaySplits::default(),
         new_ways: Spool::new(destination.scratch(".ways")?),
@@ -61,6 +64,7 @@ struct Rewriter<'s, 'r> {
     source: &'s Source<'r>,
     flavour: Flavour,
     refusals: Refusals<'s, 'r>,
+    wider: Wider,
     limits: NodeLimits,
     splits: WaySplits,
     new_ways: Spool,
@@ -195,7 +199,8 @@ impl Rewriter<'_, '_> {
             }
             OnWay::Stretches(stretches) => {
                 let limited = |nodes: &[i64]| self.limits.any_on(nodes);
-                let parts = parts(&stretches, &refs, &self.source.permitted, self.refusals.cuts(), &limited);
+                let said = |stretch: &WayStretch| self.said(stretch);
+                let parts = parts(&stretches, &refs, &said, self.refusals.cuts(), &limited);
                 (stretches, parts)
             }
         };
@@ -203,6 +208,15 @@ impl Rewriter<'_, '_> {
         self.lay(&stretches, &parts, &part_ids, &refs)?;
         self.write_parts(way, &parts, &part_ids, &refs, texts)?;
         Ok(true)
+    }
+
+    fn said(&self, stretch: &WayStretch) -> StretchPermits {
+        let permitted = |edge: EdgeNo| self.source.permitted.edges.get(edge.index());
+        StretchPermits {
+            permitted: stretch.edges.map(|edge| edge.is_some_and(permitted)),
+            rsc_m: stretch.rsc_m,
+            uses: stretch.edges.map(|edge| self.wider.uses(edge.filter(|&edge| permitted(edge))?)),
+        }
     }
 
     /// The ids of the parts. The first part keeps the way's id.

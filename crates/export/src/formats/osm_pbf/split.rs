@@ -1,7 +1,7 @@
 //! Splits ways where the permits change, and at the ends of edges that a relation names.
 
 use super::tags::StretchPermits;
-use crate::permit::{Bits, Permitted};
+use crate::permit::Bits;
 use crate::rows::EdgeNo;
 use crate::ways::WayStretch;
 
@@ -41,12 +41,12 @@ impl Cuts {
     }
 }
 
-/// The parts of a way with these stretches and references. Neighbouring parts share a node.
+/// The parts of a way with these stretches and references. Neighbouring parts share a node. `said` tells the permits of a stretch.
 /// `limited` says whether some of these nodes have a limit: it is that of the stretches beside, so the way is split at their ends.
 pub(super) fn parts(
     stretches: &[WayStretch],
     refs: &[i64],
-    permitted: &Permitted,
+    said: &dyn Fn(&WayStretch) -> StretchPermits,
     cuts: &Cuts,
     limited: &dyn Fn(&[i64]) -> bool,
 ) -> Vec<WayPart> {
@@ -58,7 +58,7 @@ pub(super) fn parts(
             return;
         }
         match out.last_mut() {
-            Some(before) if !ended && !cut[0] && before.said.permitted == part.said.permitted => {
+            Some(before) if !ended && !cut[0] && before.said.same_but_for_rsc(&part.said) => {
                 before.last = part.last;
                 for (least, rsc_m) in before.said.rsc_m.iter_mut().zip(part.said.rsc_m) {
                     *least = least.zip(rsc_m).map(|(a, b)| a.min(b));
@@ -72,10 +72,9 @@ pub(super) fn parts(
     for stretch in stretches {
         // Between stretches the extract lacks nodes, so nothing is permitted there.
         add(WayPart { first: done, last: stretch.first, said: StretchPermits::default() }, [false; 2]);
-        let yes = stretch.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge.index())));
-        let said = StretchPermits { permitted: yes, rsc_m: stretch.rsc_m };
+        let said = said(stretch);
         let on_stretch = refs.get(stretch.first..=stretch.last).unwrap_or_default();
-        let cut = if limited(on_stretch) { [true; 2] } else { cuts.of(stretch, yes) };
+        let cut = if limited(on_stretch) { [true; 2] } else { cuts.of(stretch, said.permitted) };
         match middle_of_loop(stretch, refs).filter(|_| cut != [false; 2]) {
             // The stretch returns to its beginning. It is split in the middle, because a relation could not tell its ends apart.
             Some(middle) => {
@@ -98,6 +97,8 @@ fn middle_of_loop(stretch: &WayStretch, refs: &[i64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::osm::facts::Policy;
+    use crate::wider::EdgeUse;
 
     /// A node with a limit.
     const LIMITED: i64 = 77;
@@ -115,8 +116,11 @@ mod tests {
     ) -> Vec<(usize, usize, [bool; 2])> {
         let mut bits = Bits::unset(10);
         permitted.iter().for_each(|&edge| bits.set(edge));
-        let permitted = Permitted { edges: bits, ..Permitted::default() };
-        parts(stretches, refs, &permitted, cuts, &|nodes| nodes.contains(&LIMITED))
+        let said = |stretch: &WayStretch| {
+            let permitted = stretch.edges.map(|edge| edge.is_some_and(|edge| bits.get(edge.index())));
+            StretchPermits { permitted, rsc_m: stretch.rsc_m, uses: [None; 2] }
+        };
+        parts(stretches, refs, &said, cuts, &|nodes| nodes.contains(&LIMITED))
             .iter()
             .map(|p| (p.first, p.last, p.said.permitted))
             .collect()
@@ -131,6 +135,18 @@ mod tests {
         assert_eq!(spans(&stretches, &refs, &[0, 1, 2], &none), [(0, 5, [true, false])]);
         assert_eq!(spans(&stretches, &refs, &[], &none), [(0, 5, [false; 2])]);
         assert_eq!(spans(&stretches, &refs, &[0, 1], &none), [(0, 3, [true, false]), (3, 5, [false; 2])]);
+    }
+
+    #[test]
+    fn a_way_is_split_where_it_uses_another_strip() {
+        let stretches = [0, 1, 2].map(|at| stretch(at as usize, at as usize + 1, [Some(at), None]));
+        let said = |stretch: &WayStretch| {
+            let strip = if stretch.first == 2 { Policy::Carriageway } else { Policy::Lane };
+            let uses = [Some(EdgeUse { strip, factor: 2.0 }), None];
+            StretchPermits { permitted: [true, false], rsc_m: stretch.rsc_m, uses }
+        };
+        let found = parts(&stretches, &[1, 2, 3, 4], &said, &Cuts::none(10), &|_| false);
+        assert_eq!(found.iter().map(|part| (part.first, part.last)).collect::<Vec<_>>(), [(0, 2), (2, 3)]);
     }
 
     #[test]

@@ -15,15 +15,26 @@
 //! 5 is moved away.
 
 use super::Flavour;
+use crate::wider::EdgeUse;
+use crate::words::Named as _;
 
 /// A key and its value.
 pub(super) type Tag = (Vec<u8>, Vec<u8>);
 
-/// The permits of a stretch of road: whether it is permitted, and the least RSC, along the way and against it.
+/// The permits of a stretch of road: whether it is permitted, the least RSC, and what is known of the strip that is used, along the way and
+/// against it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct StretchPermits {
     pub(super) permitted: [bool; 2],
     pub(super) rsc_m: [Option<f64>; 2],
+    pub(super) uses: [Option<EdgeUse>; 2],
+}
+
+impl StretchPermits {
+    /// Whether one way can have the tags of both stretches. Of two RSCs it has the least.
+    pub(super) fn same_but_for_rsc(&self, other: &Self) -> bool {
+        (self.permitted, self.uses) == (other.permitted, other.uses)
+    }
 }
 
 const DIRECTIONS: [&str; 2] = ["forward", "backward"];
@@ -45,12 +56,19 @@ pub(super) fn with_permits(tags: &[Tag], said: StretchPermits, flavour: Flavour)
         add("hgv".to_owned(), "no");
         add("netcert".to_owned(), "no");
     }
-    for ((direction, permitted), rsc_m) in DIRECTIONS.into_iter().zip(said.permitted).zip(said.rsc_m) {
+    let of_directions = DIRECTIONS.into_iter().zip(said.permitted).zip(said.rsc_m).zip(said.uses);
+    for (((direction, permitted), rsc_m), uses) in of_directions {
         if !closed {
             add(format!("netcert:{direction}"), if permitted { "yes" } else { "no" });
         }
         if let Some(rsc_m) = rsc_m.filter(|_| permitted) {
             add(format!("netcert:rsc:{direction}"), &rsc_m.to_string());
+        }
+        if let Some(uses) = uses.filter(|_| permitted) {
+            add(format!("netcert:uses:{direction}"), uses.strip.name());
+            if uses.factor > 1.0 {
+                add(format!("netcert:cost:{direction}"), &uses.factor.to_string());
+            }
         }
         if !permitted && !closed {
             add(format!("hgv:{direction}"), "no");
@@ -88,6 +106,7 @@ fn exchanges(key: &[u8], value: &[u8], permitted: [bool; 2], flavour: Flavour) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::osm::facts::Policy;
 
     fn tags(text: &str) -> Vec<Tag> {
         text.split_whitespace()
@@ -97,7 +116,11 @@ mod tests {
     }
 
     fn said(before: &str, permitted: [bool; 2], flavour: Flavour) -> String {
-        let said = StretchPermits { permitted, rsc_m: permitted.map(|yes| yes.then_some(0.25)) };
+        let said = StretchPermits { permitted, rsc_m: permitted.map(|yes| yes.then_some(0.25)), uses: [None; 2] };
+        written(before, said, flavour)
+    }
+
+    fn written(before: &str, said: StretchPermits, flavour: Flavour) -> String {
         let after = with_permits(&tags(before), said, flavour);
         let text = |text: &Vec<u8>| String::from_utf8_lossy(text).into_owned();
         after.iter().map(|(key, value)| format!("{}={}", text(key), text(value))).collect::<Vec<_>>().join(" ")
@@ -125,6 +148,23 @@ mod tests {
              motor_vehicle:forward=no netcert:backward=yes netcert:rsc:backward=0.25"
         );
         assert_eq!(said("netcert=no hgv=no", [true; 2], Flavour::Hgv).matches("netcert=no").count(), 0);
+    }
+
+    #[test]
+    fn the_strip_is_named_where_it_is_known_and_has_its_cost_where_it_is_wider() {
+        let uses = |strip, factor| Some(EdgeUse { strip, factor });
+        let said = StretchPermits {
+            permitted: [true; 2],
+            rsc_m: [None; 2],
+            uses: [uses(Policy::Lane, 1.0), uses(Policy::Carriageway, 5.5)],
+        };
+        assert_eq!(
+            written("highway=x netcert:uses:forward=carriageway", said, Flavour::Valhalla),
+            "highway=x netcert:forward=yes netcert:uses:forward=lane netcert:backward=yes netcert:uses:backward=carriageway \
+             netcert:cost:backward=5.5"
+        );
+        let refused = StretchPermits { permitted: [true, false], ..said };
+        assert!(!written("highway=x", refused, Flavour::Hgv).contains("carriageway"));
     }
 
     #[test]

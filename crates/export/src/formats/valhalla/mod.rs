@@ -1,9 +1,12 @@
 //! For Valhalla: the extract rewritten for its tile builder, and an example request.
 //!
 //! `extract.osm.pbf` is for `valhalla_build_tiles`. Its tags close roads to all motor vehicles, so the file is for this vehicle
-//! only. `request.json` has the costing and the vehicle's dimensions, for Valhalla's own checks of limits.
+//! only. `request.json` has the costing and the vehicle's dimensions, for Valhalla's own checks of limits. `wider.json` has what a request
+//! needs besides to keep to the own lane where it can (`cost_lines.rs`).
 //!
 //! What Valhalla cannot express is refused: a passage is open only where each of its edges and turns is permitted.
+
+mod cost_lines;
 
 use serde_json::{Map, Value, json};
 
@@ -33,6 +36,7 @@ impl Target for Valhalla {
 
     fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
         rewrite(source, self.name(), Flavour::Valhalla, destination, "extract.osm.pbf")?;
+        cost_lines::write(source, destination)?;
         destination
             .write_whole("request.json", format!("{:#}\n", request(&source.header.provenance.vehicle)).as_bytes())
     }
