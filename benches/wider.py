@@ -51,6 +51,20 @@ def valhalla_nodes(permits, actor, request, places):
     return None if line is None else [node for node in permits.nodes_of(line) if node]
 
 
+def valhalla_nodes_with(permits, actor, request, lines, places):
+    return valhalla_nodes(permits, actor, request | {"linear_cost_factors": near(lines, places)}, places)
+
+
+def near(lines, places):
+    """The lines with a position in the box of two places, grown by 2 km or so."""
+    lows, highs = ([pick(axis) + grown for axis in zip(*places)] for pick, grown in ((min, -0.02), (max, 0.02)))
+
+    def inside(at):
+        return all(low <= value <= high for low, value, high in zip(lows, at, highs))
+
+    return [line for line in lines if any(map(inside, line["geometry"]["coordinates"]))]
+
+
 def followed(actor, request, lines):
     """The lines that Valhalla can follow, found by halves."""
     try:
@@ -81,7 +95,7 @@ def main(extract, tables, tuned, rewritten, valhalla_export, work, count):
     lines = json.load(open(f"{valhalla_export}/wider.json"))["linear_cost_factors"]
     kept = followed(actor, first, lines)
     print(f"lines of wider.json: {len(lines)}, not followed: {len(lines) - len(kept)}")
-    asks["valhalla, wider.json"] = partial(valhalla_nodes, permits, actor, request | {"linear_cost_factors": kept})
+    asks["valhalla, wider.json"] = partial(valhalla_nodes_with, permits, actor, request, kept)
     found = {name: [ask(places) for places in pairs] for name, ask in asks.items()}
     alone = [osrm_nodes(pbf, ["oncoming"], places) for places in pairs]
     joint = [at for at in range(len(pairs)) if all(ways[at] for ways in found.values())]

@@ -55,7 +55,7 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
 
     let climbing = format!("{level} --at-most carriageway");
     place
-        .netcert(&format!("{climbing} --out way.json"))
+        .netcert(&format!("{climbing} --out way.json --svg way.svg"))
         .succeeds()
         .tells("AU-SEMI19 is not certified in demo.gpkg under the direction policy yet: doing it now")
         .tells("AU-SEMI19 is not certified in demo.gpkg under the carriageway policy yet: doing it now")
@@ -88,6 +88,16 @@ fn a_route_that_climbs_says_where_and_how_far_in_every_output() {
             used["from_m"].as_f64().unwrap() > 278.0 - 80.0 && used["to_m"].as_f64().unwrap() < 398.0 + 80.0,
             "{used}"
         );
+    }
+
+    // The picture has a bar for each use, with its distance, and says what holding traffic back takes.
+    let drawn = String::from_utf8(place.read("way.svg")).unwrap();
+    let places = uses(route).len();
+    let head = format!("Beyond its own lane: beyond all lanes of its direction for {length_m:.0} m at {places} place");
+    assert!(drawn.contains(&head), "{head}");
+    for used in uses(route) {
+        let number = format!(">{:.2} m<", used["beyond_m"].as_f64().unwrap());
+        assert!(drawn.contains(&number), "{number}");
     }
 
     let geojson = place.netcert(&format!("{climbing} --format geojson")).succeeds().json();

@@ -246,4 +246,11 @@ inPage("a route may use the oncoming lane where its own is not enough, and says 
     const metres = line.slice(1).reduce((sum, [lon, lat], k) => sum + Math.hypot((lon - line[k][0]) * 111_320 * Math.cos((30.2 * Math.PI) / 180), (lat - line[k][1]) * 110_800), 0);
     assert.ok(Math.abs(metres - stated[i]) < 3, `${metres} m, ${told[i]}`);
   }
+  // Who drives there reads it beside the leeway, too.
+  await uses.first().locator("button").click();
+  const slider = page.getByRole("slider", { name: "Place along the route, metres" });
+  await slider.waitFor();
+  const beyond = new RegExp(`the oncoming lane, \\w+ side, at most ${told[0].match(/at most (\d\.\d\d) m/)[1]} m over the line`);
+  await page.waitForFunction((text) => new RegExp(text).test(document.querySelector(".strip-beyond")?.textContent ?? ""), beyond.source);
+  assert.match(await slider.getAttribute("aria-valuetext"), beyond);
 });

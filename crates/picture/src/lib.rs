@@ -19,6 +19,7 @@
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
 //! | `route` | the leeway along a route, and the route's shape |
+//! | `route_uses` | where a route uses more than its own lane |
 //! | `sheet` | a page to print: a route under conditions |
 //! | `decision` | a page to file: whether one vehicle is certified on one way, or under which conditions |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
@@ -41,6 +42,7 @@ mod lengths;
 mod manoeuvres;
 pub mod palette;
 mod route;
+mod route_uses;
 mod sheet;
 mod style;
 mod svg;

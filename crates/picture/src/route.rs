@@ -1,8 +1,9 @@
-//! A route as a strip: leeway left and right along the route with its turns marked, and below it the route's shape on
-//! the map in the same colours.
+//! A route as a strip: leeway left and right along the route with its turns marked, below it where the route uses more than its own lane
+//! (`route_uses`), and the route's shape on the map in the colours of the leeway.
 
 use super::furniture::{arrow, scale_bar};
 use super::palette;
+use super::route_uses::{oncoming_words, uses};
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
 use super::{BoundingBox, Chart, PageFrame, Point, Scale, View};
@@ -17,6 +18,8 @@ const MOST_POINTS: usize = 900;
 const ENOUGH_M: f64 = 1.2;
 /// Leeway at which the map's colours end, metres.
 const FULL_M: f64 = 0.6;
+/// Room for the bars of a route that uses more than its own lane, page units.
+const USES_HEIGHT: f64 = 210.0;
 /// A turn's name is left out if it is closer than this to the previous name, page units.
 const NAME_GAP: f64 = 17.0;
 
@@ -38,11 +41,18 @@ pub fn route(network: &Network, vehicle: &Vehicle, route: &Route, conditions: us
         route.limiting_m() / 1000.0,
         if result.limiting.side == crate::stet::Side::Left { "left" } else { "right" },
     );
-    let mut picture = Picture::new(1200.0, 860.0, &head, &said);
+    let more = if route.uses.is_empty() { 0.0 } else { USES_HEIGHT };
+    let mut picture = Picture::new(1200.0, 860.0 + more, &head, &said);
     picture.text([40.0, 44.0], &head, TextStyle::size(22.0).bold());
     picture.text([40.0, 70.0], &said, TextStyle::size(14.0));
     strip(&mut picture, network, route, PageFrame { x: 80.0, y: 190.0, width: 1080.0, height: 220.0 });
-    map(&mut picture, route, PageFrame { x: 40.0, y: 480.0, width: 1120.0, height: 350.0 });
+    if !route.uses.is_empty() {
+        let heading = oncoming_words(route).map_or_else(String::new, |words| format!(": {words}"));
+        let y = 500.0;
+        picture.text([40.0, y], &format!("Beyond its own lane{heading}"), TextStyle::size(14.0).bold());
+        uses(&mut picture, network, route, PageFrame { x: 80.0, y: y + 18.0, width: 1080.0, height: 110.0 });
+    }
+    map(&mut picture, route, PageFrame { x: 40.0, y: 480.0 + more, width: 1120.0, height: 350.0 });
     picture.finish()
 }
 

@@ -1,7 +1,8 @@
 // The leeway on either side along the route: the whole route in a narrow band, and the part around the vehicle in a wide band that
-// moves with the vehicle. Up is left of travel, down is right. A stroke across marks the tightest place.
+// moves with the vehicle. Up is left of travel, down is right. A stroke across marks the tightest place. A bar at the edge of a band marks where the
+// vehicle stands beyond its own lane, on that side.
 
-import type { Route } from "../api/types.ts";
+import type { Route, StripUse } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
 import { h } from "../ui/dom.ts";
 import { distance, length } from "../units.ts";
@@ -13,6 +14,13 @@ const LEAST_FULL_M = 0.3;
 const MOST_FULL_M = 1.5;
 /** Metres of road behind and ahead of the vehicle. */
 const WINDOW_M = 160;
+/** Height of a bar where the vehicle stands beyond its own lane, and its least width, pixels. */
+const BAR_PX = 4;
+const LEAST_BAR_PX = 3;
+
+function beyondWords(used: StripUse): string {
+  return `${used.what}, ${used.side} side, at most ${length(Math.ceil(used.beyond_m * 100) / 100)} over the line`;
+}
 
 export class Strip {
   readonly element: HTMLElement;
@@ -58,8 +66,9 @@ export class Strip {
     this.#slider.value = String(Math.round(s));
     const { left, right } = leewayAt(this.route.leeway, s);
     const words = (leeway: number) => (leeway >= OPEN_M ? "open" : careful(leeway));
-    this.#slider.setAttribute("aria-valuetext", `${distance(s)}: ${words(left)} to spare left, ${words(right)} right`);
-    this.#numbers.replaceChildren(h("span", {}, `left ${words(left)}`), h("span", {}, `right ${words(right)}`));
+    const beyond = this.route.uses.filter((used) => used.from_m <= s && s <= used.to_m).map(beyondWords);
+    this.#slider.setAttribute("aria-valuetext", [`${distance(s)}: ${words(left)} to spare left, ${words(right)} right`, ...beyond].join("; "));
+    this.#numbers.replaceChildren(h("span", {}, `left ${words(left)}`), ...beyond.map((one) => h("span", { class: "strip-beyond" }, one)), h("span", {}, `right ${words(right)}`));
     this.#redraw();
   }
 
@@ -81,6 +90,7 @@ export class Strip {
     context.clearRect(0, 0, wide, tall);
     const x = (s: number): number => (wide * (s - from)) / (to - from);
     this.#columns(context, x, wide, tall);
+    this.#beyond(context, x, tall);
     this.#marks(context, x, tall, near);
   }
 
@@ -103,6 +113,14 @@ export class Strip {
     });
     context.fillStyle = this.palette.paper;
     context.fillRect(0, middle - 0.5, wide, 1);
+  }
+
+  /** The bars where the vehicle stands beyond its own lane. */
+  #beyond(context: CanvasRenderingContext2D, x: (s: number) => number, tall: number): void {
+    for (const used of this.route.uses) {
+      context.fillStyle = this.palette.strips[used.strip];
+      context.fillRect(x(used.from_m), used.side === "left" ? 0 : tall - BAR_PX, Math.max(x(used.to_m) - x(used.from_m), LEAST_BAR_PX), BAR_PX);
+    }
   }
 
   #marks(context: CanvasRenderingContext2D, x: (s: number) => number, tall: number, near: boolean): void {
