@@ -45,7 +45,12 @@ pub fn route(network: &Network, vehicle: &Vehicle, route: &Route, conditions: us
     let mut picture = Picture::new(1200.0, 860.0 + more, &head, &said);
     picture.text([40.0, 44.0], &head, TextStyle::size(22.0).bold());
     picture.text([40.0, 70.0], &said, TextStyle::size(14.0));
-    strip(&mut picture, network, route, PageFrame { x: 80.0, y: 190.0, width: 1080.0, height: 220.0 });
+    let frame = PageFrame { x: 80.0, y: 190.0, width: 1080.0, height: 220.0 };
+    strip(&mut picture, network, route, frame);
+    if let Some(words) = tolerance_words(vehicle, result.shrink) {
+        let at = [frame.x + frame.width, frame.y + frame.height + 38.0];
+        picture.text(at, &words, TextStyle::size(12.5).haloed().anchored(Anchor::End));
+    }
     if !route.uses.is_empty() {
         let heading = oncoming_words(route).map_or_else(String::new, |words| format!(": {words}"));
         let y = 500.0;
@@ -54,6 +59,13 @@ pub fn route(network: &Network, vehicle: &Vehicle, route: &Route, conditions: us
     }
     map(&mut picture, route, PageFrame { x: 40.0, y: 480.0 + more, width: 1120.0, height: 350.0 });
     picture.finish()
+}
+
+/// With what tolerance the curves are drawn, if the certificate asks for a smaller one. Then leeways may lie below 0.
+fn tolerance_words(vehicle: &Vehicle, shrink: f64) -> Option<String> {
+    let full_m = vehicle.tracking_tolerance_m;
+    let certified_m = shrink * full_m;
+    (shrink < 1.0).then(|| format!("drawn for a tracking tolerance of {full_m:.3} m; certified for {certified_m:.3} m"))
 }
 
 fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: PageFrame) {
