@@ -114,6 +114,10 @@ fn roads_that_need_the_oncoming_lane_are_dearer_by_the_table_of_prices() {
     for ends in ["1,2", "2,1", "5,6", "6,5", "9,10", "10,9", "26,27", "27,26"] {
         assert_eq!(lines.get(ends), None, "{lines:?}");
     }
+    // A turn takes 5 s, and 5 or 30 s more for other lanes. OSRM takes this in place of the profile's own seconds, which are at most 9.5.
+    let turns = String::from_utf8(place.read("osrm/wider-turns.csv")).unwrap();
+    let seconds: Vec<&str> = turns.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+    assert!(!seconds.is_empty() && seconds.iter().all(|one| ["10", "35"].contains(one)), "{turns}");
     let model = read(&place, "model.json");
     let costs = json!({"if": "in_netcert_costs_4", "multiply_by": "0.25"});
     assert!(model["priority"].as_array().unwrap().contains(&costs), "{}", model["priority"]);

@@ -1,7 +1,7 @@
 //! Streams rows from the database, each with its permit.
 //!
-//! Before the first row, every edge and turn is read once. Its permit is kept as one bit and counted for the header. Nothing else
-//! of the network is kept in memory.
+//! Before the first row, every edge and turn is read once. Its permit is kept as one bit and counted for the header. Besides, some
+//! targets keep some bytes for each edge that needs more than the own lane (`wider`).
 
 use super::ExportError;
 use super::ask::Ask;

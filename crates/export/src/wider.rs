@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::permit::Bits;
 use super::{ExportError, Source};
 use crate::osm::facts::{Policy, RoadClass};
-use crate::route::{RungPrices, Speeds};
+use crate::route::{Measure, RungPrices, Speeds};
 use crate::rows::{EdgeNo, EdgeRung, TurnNo};
 use crate::words::Named as _;
 
@@ -42,7 +42,7 @@ pub(super) struct Wider {
     kinds: Vec<WiderRoad>,
     /// By turn: whether it uses other lanes of its direction, and whether it uses the oncoming lane.
     turns: [Bits; 2],
-    /// What a turn costs on these strips, seconds.
+    /// The time of a turn with what it costs on these strips, seconds.
     turn_s: [f64; 2],
 }
 
@@ -70,7 +70,7 @@ impl Wider {
         self.kinds.get(usize::from(self.edges.get(at)?.1)).copied()
     }
 
-    /// What a permitted turn costs, if it uses more than the own lane, seconds.
+    /// The time of a permitted turn (`data/speeds.toml`) with what it costs, if it uses more than the own lane, seconds.
     pub(super) fn turn_s(&self, turn: TurnNo) -> Option<f64> {
         let used = self.turns.iter().zip(self.turn_s).find(|(turns, _)| turns.get(turn.index()));
         used.map(|(_, seconds)| seconds)
@@ -85,9 +85,10 @@ impl Source<'_> {
     pub(super) fn wider(&self) -> Result<Wider, ExportError> {
         let (vehicle, policy) = (&self.ask.vehicle, self.ask.policy);
         let mut database = self.database()?;
-        let mut known = false;
+        let (mut known, mut turns_known) = (false, false);
         for narrower in Policy::ALL.iter().filter(|narrower| **narrower < policy) {
             known |= database.certified_set(vehicle, *narrower)?.is_some();
+            turns_known |= database.has_turns(vehicle, *narrower)?;
         }
         if !known {
             return Ok(Wider::default());
@@ -108,12 +109,16 @@ impl Source<'_> {
             edges.push((edge, place));
         }
         let mut turns = STRIPS.map(|_| Bits::unset(self.permitted.turns.len()));
-        for rung in self.told(database.turn_rungs(vehicle, policy)?) {
-            let (turn, uses) = rung?;
-            for (bits, _) in turns.iter_mut().zip(STRIPS).filter(|(_, strip)| *strip == uses) {
-                bits.set(turn.index());
+        // Of a set without turns nothing is known of narrower turns.
+        if turns_known {
+            for rung in self.told(database.turn_rungs(vehicle, policy)?) {
+                let (turn, uses) = rung?;
+                for (bits, _) in turns.iter_mut().zip(STRIPS).filter(|(_, strip)| *strip == uses) {
+                    bits.set(turn.index());
+                }
             }
         }
-        Ok(Wider { known, edges, kinds, turns, turn_s: STRIPS.map(|strip| prices.turn_s(strip)) })
+        let own_s = 1e-3 * speeds.turn_cost(Measure::Time) as f64;
+        Ok(Wider { known, edges, kinds, turns, turn_s: STRIPS.map(|strip| own_s + prices.turn_s(strip)) })
     }
 }
