@@ -81,10 +81,8 @@ def main(extract, tables, tuned, rewritten, valhalla_export, work, count):
     os.makedirs(work, exist_ok=True)
     permits = Permits(extract, tables)
     closed = ["--segment-speed-file", f"{tuned}/segment-speeds.csv", "--turn-penalty-file", f"{tuned}/turn-penalties.csv"]
-    wider = ["--segment-speed-file", f"{tuned}/wider-speeds.csv", "--turn-penalty-file", f"{tuned}/wider-turns.csv"]
     asks = {}
-    for name, customize in (("osrm", closed), ("osrm, wider files", wider + closed)):
-        asks[name] = partial(osrm_nodes, run_osrm.engine(extract, work, name.split(",")[0] + str(len(customize)), customize), [])
+    asks["osrm"] = partial(osrm_nodes, run_osrm.engine(extract, work, "osrm", closed), [])
     pbf = run_osrm.engine(rewritten, work, "pbf")
     asks["osm-pbf, hgv.lua"] = partial(osrm_nodes, pbf, [])
     actor = run_valhalla.engine(f"{valhalla_export}/extract.osm.pbf", work, "valhalla")

@@ -3,7 +3,7 @@
 
 local car = require('car')
 
--- Roads on which the vehicle needs the oncoming lane. A request with exclude=oncoming keeps off them.
+-- Roads on which the vehicle needs the oncoming lane. A request with exclude=oncoming keeps off them. Turns may still need it.
 local ONCOMING_LANE = 'oncoming'
 
 local function setup()

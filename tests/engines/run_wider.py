@@ -54,9 +54,8 @@ def main(extract, tables, tuned, rewritten, valhalla_export, work):
     permits = Permits(extract, tables)
     asked = pairs(permits)
     closed = ["--segment-speed-file", f"{tuned}/segment-speeds.csv", "--turn-penalty-file", f"{tuned}/turn-penalties.csv"]
-    wider = ["--segment-speed-file", f"{tuned}/wider-speeds.csv", "--turn-penalty-file", f"{tuned}/wider-turns.csv"]
     out = {}
-    for name, from_file, customize in [("csv", extract, closed), ("csv_wider", extract, wider + closed), ("pbf", rewritten, [])]:
+    for name, from_file, customize in [("csv", extract, closed), ("pbf", rewritten, [])]:
         engine = run_osrm.engine(from_file, work, name, customize)
         out[name] = by_osrm(engine, asked)
     out["pbf_without_oncoming_lane"] = by_osrm(engine, asked, ["oncoming"])

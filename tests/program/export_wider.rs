@@ -1,8 +1,6 @@
 //! Exports of a database that knows where the vehicle needs more than its own lane: they say so, make such roads dearer, and engines drive there
 //! only where they must.
 
-use std::collections::BTreeMap;
-
 use geo::{Intersects as _, LineString, Polygon};
 use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
@@ -99,29 +97,11 @@ fn ring(coordinates: &Value) -> Polygon {
 fn roads_that_need_the_oncoming_lane_are_dearer_by_the_table_of_prices() {
     let place = exported("lane,direction,carriageway", TARGETS);
     // A secondary road costs 1 + 3 times its time where the oncoming lane is used (data/rungs.toml).
-    let lines = String::from_utf8(place.read("osrm/wider-speeds.csv")).unwrap();
-    let lines: BTreeMap<String, [f64; 2]> = lines
-        .lines()
-        .map(|line| {
-            let cells: Vec<&str> = line.split(',').collect();
-            (cells[..2].join(","), [2, 3].map(|at: usize| cells[at].parse().unwrap()))
-        })
-        .collect();
-    for ends in ["3,4", "4,3", "7,8", "8,7"] {
-        // 55 km/h are 15.278 m/s (data/speeds.toml).
-        assert_eq!(lines.get(ends), Some(&[55.0, 3.819]), "{lines:?}");
-    }
-    for ends in ["1,2", "2,1", "5,6", "6,5", "9,10", "10,9", "26,27", "27,26"] {
-        assert_eq!(lines.get(ends), None, "{lines:?}");
-    }
-    // A turn takes 5 s, and 5 or 30 s more for other lanes. OSRM takes this in place of the profile's own seconds, which are at most 9.5.
-    let turns = String::from_utf8(place.read("osrm/wider-turns.csv")).unwrap();
-    let seconds: Vec<&str> = turns.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
-    assert!(!seconds.is_empty() && seconds.iter().all(|one| ["10", "35"].contains(one)), "{turns}");
     let model = read(&place, "model.json");
     let costs = json!({"if": "in_netcert_costs_4", "multiply_by": "0.25"});
     assert!(model["priority"].as_array().unwrap().contains(&costs), "{}", model["priority"]);
     let areas = model["areas"]["features"].as_array().unwrap();
+    assert_eq!(areas[0]["properties"]["netcert"]["vehicle"]["id"], VEHICLE);
     let area = &areas.iter().find(|area| area["id"] == "netcert_costs_4").unwrap()["geometry"]["coordinates"];
     let oncoming = &read(&place, "ors/avoid_oncoming_lane.json")["coordinates"];
     for area in [area, oncoming] {
@@ -143,9 +123,7 @@ fn roads_that_need_the_oncoming_lane_are_dearer_by_the_table_of_prices() {
 #[test]
 fn nothing_is_dearer_where_no_narrower_strip_was_tried() {
     let place = exported("carriageway", TARGETS);
-    for absent in
-        ["osrm/wider-speeds.csv", "osrm/wider-turns.csv", "valhalla/wider.json", "ors/avoid_oncoming_lane.json"]
-    {
+    for absent in ["valhalla/wider.json", "ors/avoid_oncoming_lane.json"] {
         assert!(!place.path(absent).exists(), "{absent}");
     }
     assert_eq!(read(&place, "model.json")["priority"], json!([]));
@@ -162,7 +140,7 @@ fn engines_use_the_oncoming_lane_only_where_they_must() {
     for name in ["csv", "valhalla"] {
         assert_eq!(answer[name], json!([true, true]), "{answer}");
     }
-    for name in ["csv_wider", "pbf", "valhalla_wider"] {
+    for name in ["pbf", "valhalla_wider"] {
         assert_eq!(answer[name], json!([false, true]), "{answer}");
     }
     assert_eq!(answer["pbf_without_oncoming_lane"], json!([false, null]), "{answer}");

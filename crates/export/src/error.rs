@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use crate::osm::pbf::ReadError;
-use crate::route::{RungPricesError, SpeedsError};
+use crate::route::RungPricesError;
 use crate::store::StoreError;
 
 /// An error of an export.
@@ -20,9 +20,6 @@ pub enum ExportError {
     /// The shipped table of prices is broken.
     #[error(transparent)]
     Prices(#[from] RungPricesError),
-    /// The shipped table of speeds is broken.
-    #[error(transparent)]
-    Speeds(#[from] SpeedsError),
     /// Writing failed; [`super::export`] adds the name of the file.
     #[error("cannot write: {0}")]
     Write(#[from] std::io::Error),

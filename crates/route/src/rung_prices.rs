@@ -97,12 +97,6 @@ impl RungPrices {
         RoadClass::ALL.iter().zip(shares).find(|(of, _)| **of == class).map_or(0.0, |(_, share)| share)
     }
 
-    /// What is added to a turn that uses this strip, seconds.
-    #[must_use]
-    pub fn turn_s(&self, strip: Policy) -> f64 {
-        self.of(strip).map_or(0.0, |price| 1e-3 * price.turn_ms as f64)
-    }
-
     /// Adds to an access what it costs to climb. What is barred stays barred.
     pub(super) fn add(&self, access: &mut Access, graph: &Graph, rungs: &Rungs, measure: Measure) {
         if rungs.is_level() {

@@ -86,14 +86,6 @@ impl Speeds {
         })
     }
 
-    /// The speed on a road of this class, a link or none, with this tagged limit, m/s.
-    #[must_use]
-    pub fn m_s(&self, class: RoadClass, link: bool, limit_km_h: Option<u8>) -> f64 {
-        let m_s = RoadClass::ALL.iter().zip(self.m_s).find(|(of, _)| **of == class);
-        let m_s = m_s.map_or(self.m_s[0], |(_, m_s)| m_s) * if link { self.link_share } else { 1.0 };
-        limit_km_h.map_or(m_s, |km_h| m_s.min(f64::from(km_h) / 3.6))
-    }
-
     /// The cost of an edge, milliseconds or millimetres. It is at least 1.
     #[must_use]
     pub fn cost(&self, network: &Network, edge: &Edge, measure: Measure) -> u64 {
@@ -102,8 +94,11 @@ impl Speeds {
             Measure::Distance => 1e3 * length_m,
             Measure::Time => {
                 let road = network.road(edge);
-                let limit_km_h = road.max_speed_km_h[edge.direction as usize].map(std::num::NonZero::get);
-                1e3 * length_m / self.m_s(road.class, road.link, limit_km_h)
+                let m_s = RoadClass::ALL.iter().zip(self.m_s).find(|(class, _)| **class == road.class);
+                let m_s = m_s.map_or(self.m_s[0], |(_, m_s)| m_s);
+                let m_s = m_s * if road.link { self.link_share } else { 1.0 };
+                let limit = road.max_speed_km_h[edge.direction as usize];
+                1e3 * length_m / limit.map_or(m_s, |km_h| m_s.min(f64::from(km_h.get()) / 3.6))
             }
         };
         (cost.ceil() as u64).max(1)

@@ -153,13 +153,11 @@ pub struct EdgeStep {
     pub width_source: Option<WidthSource>,
 }
 
-/// The narrowest strip on which an edge is safe, and what its driving time depends on.
+/// The narrowest strip on which an edge is safe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge` and `certificate`
 pub struct EdgeRung {
     pub edge: EdgeNo,
     pub uses: Policy,
     pub class: RoadClass,
-    pub link: bool,
-    pub maxspeed_kmh: Option<u8>,
 }

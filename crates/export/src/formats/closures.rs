@@ -2,7 +2,7 @@
 //!
 //! Every refused stretch between two junctions gets one rectangle, on its longest straight, so that the rectangle meets no other
 //! road. An area has no direction, so a stretch that is refused in one direction is closed in both. An area cannot express a turn. A
-//! stretch that leads only to a refused corner of the road is closed instead. Of a stretch with two directions that cost different, the dearer one
+//! stretch that leads only to a refused corner of the road is closed instead. Of a stretch with two directions that cost differently, the dearer one
 //! counts.
 
 use std::io::{self, Write};
@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use super::geojson::position;
 use crate::osm::LonLat;
 use crate::rows::EdgeNo;
-use crate::wider::{Wider, WiderRoad};
+use crate::wider::{EdgeUse, Wider};
 use crate::{ExportError, Source};
 
 /// Half the rectangle's size across the road, metres. Engines move lines by half a metre when they simplify them (GraphHopper:
@@ -50,7 +50,7 @@ pub(super) enum Across {
     /// A stretch that is closed.
     Closed,
     /// A stretch that is open and uses more than the own lane.
-    Wider(WiderRoad),
+    Wider(EdgeUse),
 }
 
 /// Calls `put` with the rectangle of every stretch that is refused or uses more than the own lane, in order of the network.
@@ -103,10 +103,10 @@ struct Stretch {
     line: Vec<LonLat>,
     refused: bool,
     permitted: bool,
-    wider: Option<WiderRoad>,
+    wider: Option<EdgeUse>,
 }
 
-fn dearer(a: Option<WiderRoad>, b: Option<WiderRoad>) -> Option<WiderRoad> {
+fn dearer(a: Option<EdgeUse>, b: Option<EdgeUse>) -> Option<EdgeUse> {
     a.into_iter().chain(b).max_by(|a, b| a.factor.total_cmp(&b.factor))
 }
 

@@ -50,7 +50,9 @@ impl Target for GraphHopper {
         for (factor, rings) in wider {
             let mut area = Area::wider(f64::from_bits(factor));
             write!(sink, "{}", if areas.is_empty() { "" } else { ",\n" })?;
-            rings.iter().try_for_each(|ring| area.put(&mut sink, "", ring))?;
+            rings
+                .iter()
+                .try_for_each(|ring| area.put(&mut sink, if areas.is_empty() { &properties } else { "" }, ring))?;
             areas.extend(area.finish(&mut sink)?);
         }
         write!(sink, "]}},\n\"priority\":[")?;

@@ -3,7 +3,7 @@
 //! | file | for |
 //! | --- | --- |
 //! | `avoid_polygons.json` | `options.avoid_polygons` of a request; any instance takes it |
-//! | `avoid_oncoming_lane.json` | the same with the roads on which the vehicle needs the oncoming lane; only if the database knows where it does not |
+//! | `avoid_oncoming_lane.json` | the same with the roads on which the vehicle needs the oncoming lane; only if the vehicle is certified under a narrower policy, too |
 //! | `match.json` | the body of a request to `/v2/match/PROFILE`: openrouteservice answers with the numbers of its edges |
 //! | `feature_map.jq` | turns that answer into rows of the table `feature_map`, which an instance with dynamic data reads |
 //!
@@ -47,7 +47,8 @@ impl Target for Ors {
     fn write(&self, source: &Source<'_>, _: &Options, destination: &mut Destination) -> Result<(), ExportError> {
         let mut avoid = MultiPolygon::create(destination, "avoid_polygons.json")?;
         let wider = source.wider()?;
-        let oncoming = wider.known().then(|| MultiPolygon::create(destination, "avoid_oncoming_lane.json"));
+        let asked = source.ask.policy == Policy::Carriageway && wider.known();
+        let oncoming = asked.then(|| MultiPolygon::create(destination, "avoid_oncoming_lane.json"));
         let mut oncoming = oncoming.transpose()?;
         let mut features = destination.create("match.json")?;
         features.write_all(b"{\"key\":\"netcert\",\"features\":{\"type\":\"FeatureCollection\",\"features\":[")?;

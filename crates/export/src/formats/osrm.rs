@@ -5,10 +5,6 @@
 //! permitted edges, and for turning back. OSRM closes segments. It stores penalties in 16 bits, so a turn cannot be closed, only
 //! be made to cost 55 minutes. Where nothing else meets, OSRM has no turn that could cost anything, so the segment before is closed.
 //!
-//! If the database knows where the vehicle needs more than its own lane, `wider-speeds.csv` and `wider-turns.csv` make these roads and turns
-//! dearer. They are files of their own because of two lines for one segment OSRM takes the first one of a file, but the last file: what
-//! `segment-speeds.csv` closes stays closed only if that file comes last (`findings/osrm-two-lines-one-segment.sh`).
-//!
 //! What OSRM cannot express is refused. Of a restriction over ways, and of a refused passage, the first step is refused. A passage
 //! is open only where each of its edges and turns is permitted.
 
@@ -19,10 +15,9 @@ use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
 use crate::osm::pbf::copy::Contents;
-use crate::rows::{EdgeNo, TurnStep};
+use crate::rows::EdgeNo;
 use crate::scratch::Scratch;
 use crate::ways::{OnWay, WayEdges, WayStretch, check_ids, ids};
-use crate::wider::{Wider, WiderRoad};
 use crate::{Destination, ExportError, Layout, Sink, Source};
 
 /// The penalty of a refused turn, seconds. It is the greatest that OSRM can store (2^15 − 1 tenths).
@@ -56,8 +51,7 @@ impl Target for Osrm {
         let stopped = source.stopped()?;
         let speeds = destination.create("segment-speeds.csv")?;
         let turns = destination.create("turn-penalties.csv")?;
-        let wider = WiderTables::create(source, destination)?;
-        let mut tables = Tables { source, speeds, turns, wider, ends, stopped, unclear: 0 };
+        let mut tables = Tables { source, speeds, turns, ends, stopped, unclear: 0 };
         tables.ways()?;
         tables.turns()?;
         if tables.unclear > 0 {
@@ -65,45 +59,7 @@ impl Target for Osrm {
             source.reporter.note(&note);
         }
         tables.speeds.close()?;
-        tables.turns.close()?;
-        tables.wider.map_or(Ok(()), WiderTables::close)
-    }
-}
-
-/// What makes roads and turns dearer that use more than the own lane.
-struct WiderTables {
-    costs: Wider,
-    speeds: Sink,
-    turns: Sink,
-}
-
-impl WiderTables {
-    /// None where the database does not know whether a narrower strip would do.
-    fn create(source: &Source<'_>, destination: &mut Destination) -> Result<Option<Self>, ExportError> {
-        let costs = source.wider()?;
-        if !costs.known() {
-            return Ok(None);
-        }
-        let [speeds, turns] = [destination.create("wider-speeds.csv")?, destination.create("wider-turns.csv")?];
-        Ok(Some(Self { costs, speeds, turns }))
-    }
-
-    /// Writes the segments of an edge, whose nodes are in direction of travel. OSRM takes the speed, km/h, for the time, and the rate, m/s, for the
-    /// cost. It takes no rate without a speed.
-    fn edge<'n>(&mut self, edge: EdgeNo, nodes: impl Iterator<Item = &'n i64>) -> Result<(), ExportError> {
-        let Some(WiderRoad { m_s, factor, .. }) = self.costs.edge(edge) else { return Ok(()) };
-        let mut before = None;
-        for &node in nodes {
-            if let Some(from) = before.replace(node).filter(|&from| from != node) {
-                writeln!(self.speeds, "{from},{node},{:.1},{:.3}", 3.6 * m_s, m_s / factor)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn close(self) -> Result<(), ExportError> {
-        self.speeds.close()?;
-        self.turns.close()
+        tables.turns.close()
     }
 }
 
@@ -111,7 +67,6 @@ struct Tables<'s, 'r> {
     source: &'s Source<'r>,
     speeds: Sink,
     turns: Sink,
-    wider: Option<WiderTables>,
     ends: Ends,
     /// Edges whose last segment is closed, because the only way on is refused.
     stopped: FxHashSet<EdgeNo>,
@@ -167,7 +122,6 @@ impl Tables<'_, '_> {
             done = last;
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge.index())));
             self.close(refs, first, last, permitted.map(|yes| !yes))?;
-            self.wider(refs, stretch, permitted)?;
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
             // The nearest different node at each end, because adjacent repetitions of a node count as one.
             let after = (first..last).map(|i| node(i + 1)).find(|&id| id != node(first)).unwrap_or_default();
@@ -194,17 +148,6 @@ impl Tables<'_, '_> {
         self.close(refs, done, refs.len().saturating_sub(1), [true; 2])
     }
 
-    fn wider(&mut self, refs: &[i64], stretch: &WayStretch, permitted: [bool; 2]) -> Result<(), ExportError> {
-        let nodes = refs.get(stretch.first..=stretch.last).unwrap_or_default();
-        if let (Some(wider), Some(edge), true) = (&mut self.wider, stretch.edges[0], permitted[0]) {
-            wider.edge(edge, nodes.iter())?;
-        }
-        if let (Some(wider), Some(edge), true) = (&mut self.wider, stretch.edges[1], permitted[1]) {
-            wider.edge(edge, nodes.iter().rev())?;
-        }
-        Ok(())
-    }
-
     /// Closes the segments between two indices of a way, along the way and against it as `closed` says.
     fn close(&mut self, refs: &[i64], from: usize, to: usize, closed: [bool; 2]) -> Result<(), ExportError> {
         for pair in refs.get(from..=to).unwrap_or_default().windows(2).filter(|pair| pair[0] != pair[1]) {
@@ -229,8 +172,6 @@ impl Tables<'_, '_> {
             let step = step?;
             if source.refuses_turn(&step) {
                 self.refuse(step.from, step.to)?;
-            } else if step.arcs.is_none() && source.permitted.turns.get(step.turn.index()) {
-                self.wider_turn(&step)?;
             }
         }
         for sequence in source.sequences()? {
@@ -242,25 +183,12 @@ impl Tables<'_, '_> {
     }
 
     fn refuse(&mut self, from: EdgeNo, to: EdgeNo) -> Result<(), ExportError> {
-        let turn = self.open_turn(from, to)?;
-        turn.map_or(Ok(()), |[before, via, after]| self.penalise(before, via, after))
-    }
-
-    /// Writes the seconds of a permitted turn that uses more than the own lane. OSRM takes them in place of those of the profile, which are at most
-    /// 9.5 s in its car profile.
-    fn wider_turn(&mut self, step: &TurnStep) -> Result<(), ExportError> {
-        let Some(seconds) = self.wider.as_ref().and_then(|wider| wider.costs.turn_s(step.turn)) else { return Ok(()) };
-        if let (Some([before, via, after]), Some(wider)) = (self.open_turn(step.from, step.to)?, &mut self.wider) {
-            writeln!(wider.turns, "{before},{via},{after},{seconds}")?;
-        }
-        Ok(())
-    }
-
-    /// The nodes before, at and after a turn. `None` if they are not clear, or if a segment is closed instead.
-    fn open_turn(&mut self, from: EdgeNo, to: EdgeNo) -> Result<Option<[i64; 3]>, ExportError> {
         let ([_, before, via], [after, _, end]) = (self.ends.get(from)?, self.ends.get(to)?);
         let closed = self.stopped.contains(&from) || (self.stopped.contains(&to) && after == end);
-        Ok((before != 0 && after != 0 && !closed).then_some([before, via, after]))
+        if before == 0 || after == 0 || closed {
+            return Ok(());
+        }
+        self.penalise(before, via, after)
     }
 }
 

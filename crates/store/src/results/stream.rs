@@ -9,7 +9,7 @@ use crate::network::EdgeNo;
 use crate::osm::NodeId;
 use crate::osm::facts::{Policy, class_and_link};
 use netcert_base::verdict::Verdict;
-use netcert_rows::{EdgeRung, EdgeStep, TurnNo, TurnRow, TurnStep};
+use netcert_rows::{EdgeRung, EdgeStep, TurnRow, TurnStep};
 
 use crate::columns::names::{SAFE, width_columns};
 use crate::columns::read::{edge_of, turn_of, verdict, word_or_none};
@@ -25,9 +25,6 @@ type Sql<T> = Result<T, sqlx::Error>;
 
 /// An edge with its verdict and its RSC, metres, if it was computed.
 pub type EdgeConclusion = (EdgeNo, Verdict, Option<f64>);
-
-/// A turn and the narrowest strip on which it is safe.
-pub type TurnRung = (TurnNo, Policy);
 
 /// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
 pub type StraightOn = (EdgeNo, Option<EdgeNo>);
@@ -79,26 +76,12 @@ impl Database {
     /// The file cannot be read.
     pub fn edge_rungs(&mut self, vehicle: &str, policy: Policy) -> Result<RowStream<'_, EdgeRung>, StoreError> {
         let sql = format!(
-            "SELECT c.fid, {uses}, e.highway, e.maxspeed_kmh FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+            "SELECT c.fid, {uses}, e.highway FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
              AND c.verdict_no = {SAFE} ORDER BY c.fid",
             uses = uses::number(uses::EDGES)
         );
         Ok(self.streamed(sql, vehicle, policy, edge_rung))
-    }
-
-    /// The narrowest strip on which each safe turn is safe, whatever the policy under which it is asked for.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn turn_rungs(&mut self, vehicle: &str, policy: Policy) -> Result<RowStream<'_, TurnRung>, StoreError> {
-        let sql = format!(
-            "SELECT c.fid, {uses} FROM turn_certificate_compact AS c \
-             WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
-             AND c.verdict_no = {SAFE} ORDER BY c.fid",
-            uses = uses::number(uses::TURNS)
-        );
-        Ok(self.streamed(sql, vehicle, policy, turn_rung))
     }
 
     /// Every turn of a vehicle with all columns. There are no rows if its turns are not certified.
@@ -182,19 +165,9 @@ fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
 fn edge_rung(row: &SqliteRow) -> Sql<EdgeRung> {
     let fid: u32 = row.try_get(0)?;
     let highway: &str = row.try_get(2)?;
-    let (class, link) = class_and_link(highway).ok_or_else(|| content(format!("edge {fid}: highway {highway}")))?;
-    let maxspeed_kmh = row.try_get(3)?;
-    Ok(EdgeRung { edge: edge_of(fid), uses: rung(row, 1, || format!("edge {fid}"))?, class, link, maxspeed_kmh })
-}
-
-fn turn_rung(row: &SqliteRow) -> Sql<TurnRung> {
-    let fid: u32 = row.try_get(0)?;
-    Ok((turn_of(fid), rung(row, 1, || format!("turn {fid}"))?))
-}
-
-/// The narrowest strip of a row that is safe, and so has one.
-fn rung(row: &SqliteRow, column: usize, what: impl Fn() -> String) -> Sql<Policy> {
-    uses::read(row, column)?.ok_or_else(|| content(format!("{} is safe and uses no strip", what())))
+    let (class, _) = class_and_link(highway).ok_or_else(|| content(format!("edge {fid}: highway {highway}")))?;
+    let uses = uses::read(row, 1)?.ok_or_else(|| content(format!("edge {fid} is safe and uses no strip")))?;
+    Ok(EdgeRung { edge: edge_of(fid), uses, class })
 }
 
 fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
