@@ -81,8 +81,7 @@ def main(extract, tables, tuned, rewritten, valhalla_export, work, count):
     os.makedirs(work, exist_ok=True)
     permits = Permits(extract, tables)
     closed = ["--segment-speed-file", f"{tuned}/segment-speeds.csv", "--turn-penalty-file", f"{tuned}/turn-penalties.csv"]
-    asks = {}
-    asks["osrm"] = partial(osrm_nodes, run_osrm.engine(extract, work, "osrm", closed), [])
+    asks = {"osrm": partial(osrm_nodes, run_osrm.engine(extract, work, "osrm", closed), [])}
     pbf = run_osrm.engine(rewritten, work, "pbf")
     asks["osm-pbf, hgv.lua"] = partial(osrm_nodes, pbf, [])
     actor = run_valhalla.engine(f"{valhalla_export}/extract.osm.pbf", work, "valhalla")

@@ -81,9 +81,7 @@ fn legend(picture: &mut Picture, network: &Network, route: &Route, frame: PageFr
 
 /// What holding traffic back takes on a route, or nothing if it stays in the lanes of its direction.
 pub(super) fn oncoming_words(route: &Route) -> Option<String> {
-    let oncoming = route.uses.iter().filter(|used| used.strip == Policy::Carriageway);
-    let (places, metres) =
-        oncoming.fold((0, 0.0), |(places, metres), used| (places + 1, metres + used.to_m - used.from_m));
+    let (places, metres) = route.beyond_all_lanes();
     let at = if places == 1 { "place" } else { "places" };
     (places > 0).then(|| {
         format!("beyond all lanes of its direction for {metres:.0} m at {places} {at}: oncoming traffic must be held back there")

@@ -118,6 +118,13 @@ impl Route {
         if corridor.areas.iter().any(|span| meets(&span.heads)) { wider } else { part.clone() }
     }
 
+    /// At how many places the route stands beyond all lanes of its direction, and for how many metres.
+    #[must_use]
+    pub fn beyond_all_lanes(&self) -> (usize, f64) {
+        let oncoming = self.uses.iter().filter(|used| used.strip == Policy::Carriageway);
+        oncoming.fold((0, 0.0), |(places, metres), used| (places + 1, metres + used.to_m - used.from_m))
+    }
+
     /// The stretches on roads that are open to a destination only ([`destination_tag`]).
     #[must_use]
     pub fn destination_only(&self, network: &Network, vehicle: &Vehicle) -> Vec<LimitedStretch> {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use netcert::network::{Network, PassageKind, destination_words};
-use netcert::osm::facts::Policy;
 use netcert::route::{self, Answer, Comparison, Conditional, LimitedStretch, PartKind, Route, UsePlace};
 use netcert::words::Named;
 
@@ -186,14 +185,12 @@ fn uses(out: &mut dyn Write, network: &Network, found: &Route) -> std::io::Resul
         ]);
     }
     table.write(out, "  ")?;
-    let oncoming: Vec<_> = found.uses.iter().filter(|used| used.strip == Policy::Carriageway).collect();
-    if !oncoming.is_empty() {
-        let length_m: f64 = oncoming.iter().map(|used| used.to_m - used.from_m).sum();
-        let places = if oncoming.len() == 1 { "place" } else { "places" };
+    let (places, metres) = found.beyond_all_lanes();
+    if places > 0 {
+        let at = if places == 1 { "place" } else { "places" };
         let told = format!(
-            "Beyond all lanes of its direction for {length_m:.0} m at {} {places}. Oncoming traffic must be held back there; nothing here says \
-             that it is.",
-            oncoming.len()
+            "Beyond all lanes of its direction for {metres:.0} m at {places} {at}. Oncoming traffic must be held back there; nothing here says \
+             that it is."
         );
         writeln!(out, "\n{}", wrapped(&told, "  "))?;
     }

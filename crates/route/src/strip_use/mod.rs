@@ -18,6 +18,7 @@ use crate::network::{EdgeNo, Network};
 use crate::osm::facts::{Oneway, Policy};
 use crate::stet::{Certificate, Model, Side, known_m};
 use crate::stop::{Stop, Stopped};
+use crate::turn_ends::TurnEnds;
 use strips::{PartStrips, StationStrips};
 use turn_reach::turn_reach;
 use windows::{BodyReach, area_windows};
@@ -105,7 +106,8 @@ impl StripUse {
                     None => [0, 1].map(|side| Some(strips.corridor[side] - leeways[side]?)),
                 });
                 let Some(beyond) = beyond else { continue };
-                let turn = window.map(|window| window.at).filter(|at| matches!(at, PartKind::Turn { .. }));
+                let turn =
+                    window.and_then(|window| window.turn).map(|TurnEnds { from, to }| PartKind::Turn { from, to });
                 let uses = if turn.is_some() { &mut beside } else { &mut all };
                 let found = Self::at_station(path, turn.unwrap_or(part.kind), k, beyond);
                 match uses.last_mut() {

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use super::super::assemble::{PartKind, RoutePart, RoutePath};
+use super::super::assemble::{RoutePart, RoutePath};
 use super::super::pieces::Strokes;
-use super::super::turn_ends::TurnEnds;
 use super::windows::AreaWindow;
 use crate::corridor::FrameError;
 use crate::network::{EdgeNo, Network};
@@ -63,13 +62,12 @@ impl PartStrips {
         let places = on_line(path, part.stations.clone(), &line).ok()?;
         let policy = strokes.settings().policy;
         let own = strokes.rungs().section(edge, section).strip(policy)?;
-        let surface =
-            |window: &&AreaWindow| matches!(window.at, PartKind::Turn { from, to } if has_surface(network, [from, to]));
-        let of_window = |window: &AreaWindow| match window.at {
+        let surface = |window: &AreaWindow| window.turn.is_some_and(|ends| has_surface(network, [ends.from, ends.to]));
+        let of_window = |window: &AreaWindow| match window.turn {
             // What was measured or traced at a junction may reach beyond all lanes.
-            PartKind::Turn { .. } if surface(&window) => Policy::Carriageway,
-            PartKind::Turn { from, to } => strokes.turn_strip(TurnEnds { from, to }),
-            PartKind::Edge(_) => policy,
+            Some(_) if surface(window) => Policy::Carriageway,
+            Some(ends) => strokes.turn_strip(ends),
+            None => policy,
         };
         let corridor = &path.corridor;
         let at = |(k, place): (usize, LinePlace)| {
@@ -77,7 +75,7 @@ impl PartStrips {
             let turn_strip = near().map(of_window).max().unwrap_or(policy);
             let half_widths = [corridor.left_m[k], corridor.right_m[k]];
             let strips = strips_at(&line, place, half_widths, own, &section, turn_strip)?;
-            Some(StationStrips { has_surface: near().any(|window| surface(&window)), ..strips })
+            Some(StationStrips { has_surface: near().any(surface), ..strips })
         };
         Some(part.stations.clone().zip(places).map(at).collect())
     }
