@@ -248,6 +248,19 @@ impl Region {
         Ok(Planner::climbing(&roads, &ladder, &Speeds::builtin()?, measure, &RungPrices::builtin()?))
     }
 
+    /// The widest policy under which a vehicle's turns are certified, if it is wider than `policy`. Else `policy`.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn widest_policy(&mut self, vehicle: &str, policy: Policy) -> Result<Policy, RegionError> {
+        for &wider in Policy::ALL.iter().rev().filter(|wider| **wider > policy) {
+            if self.database.has_turns(vehicle, wider)? {
+                return Ok(wider);
+            }
+        }
+        Ok(policy)
+    }
+
     /// A vehicle with its permits on [`Self::roads`].
     ///
     /// # Errors

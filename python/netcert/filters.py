@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal, TypedDict
 
 Corridor = Literal["lane", "direction", "carriageway"]
+AtMost = Literal["lane", "direction", "carriageway", "attested"]
 Verdict = Literal["safe", "unsafe", "forbidden", "unknown"]
 WidthSource = Literal["assumed", "from_lanes", "estimated", "tagged", "surveyed"]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._netcert import Explanation, RegionFile, Vehicle, Verification
 from .errors import RegionError
-from .filters import Corridor, EdgeFilters, TurnFilters, Verdict, WidthSource
+from .filters import AtMost, Corridor, EdgeFilters, TurnFilters, Verdict, WidthSource
 from .routes import Routes
 from .table import Table
 
@@ -192,7 +192,7 @@ class Region:
         alternatives: int = 0,
         tries: int = 30,
         conditions: bool = True,
-        at_most: Corridor | None = None,
+        at_most: AtMost | None = None,
     ) -> Routes:
         """Routes with one certificate over the whole way each, or what blocks them.
 
@@ -201,7 +201,9 @@ class Region:
         alternatives     number of routes beside the best one
         tries            number of whole routes that may fail to certify
         conditions       whether to look for a route that holds under conditions, if none is certified; that takes longer
-        at_most          the widest strip that a route may use where `corridor` is not enough; each route's `uses` says where
+        at_most          the widest strip that a route may use where `corridor` is not enough; each route's `uses` says where. With
+                         "attested": the widest strip of the file, and conditions only where a sign, a network or the register says
+                         that the vehicle goes
 
         The first question loads the network. Later ones for the same vehicle are faster, because corridors are kept.
 

@@ -173,6 +173,11 @@ class Route:
             Condition(**{name: one[name] for name in names}, place=_place(one.get("place")), members=one) for one in known
         ]
 
+    @property
+    def conditions_attested(self) -> bool:
+        """Whether a sign, a network or the register says that the vehicle goes at the place of every condition. That is no proof."""
+        return bool(self._members.get("conditions_attested", False))
+
     def certificate(self) -> str:
         """The certificate file as JSON text. `netcert verify` checks it."""
         return self._answer.certificate(self._number)

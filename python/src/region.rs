@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use netcert::osm::facts::Policy;
 use netcert::region::Region;
-use netcert::route::{Measure, Planner, Question};
+use netcert::route::{AtMost, Conditions, Measure, Planner, Question};
 use netcert::rows::{EdgeRow, TurnRow};
 use netcert::verify::{Request, verify};
 use netcert::words::Named;
@@ -190,10 +190,22 @@ impl RegionFile {
         at_most: Option<&str>,
     ) -> PyResult<Answer> {
         let policy = self.policy(py, corridor)?;
-        let top = at_most.map(|word| named::<Policy>("at_most", word)).transpose()?.unwrap_or(policy);
-        if at_most.is_some() && top <= policy {
-            return Err(PyValueError::new_err("at_most: expected a policy that is wider than `corridor`"));
-        }
+        let at_most = at_most.map(|word| named::<AtMost>("at_most", word)).transpose()?;
+        let top = match at_most {
+            None => policy,
+            Some(AtMost::Attested) => {
+                self.region().widest_policy(vehicle_id, policy).map_err(|e| error::of_region(&e))?
+            }
+            Some(top) if top.strip() <= policy => {
+                let expected = "at_most: expected a policy that is wider than `corridor`, or \"attested\"";
+                return Err(PyValueError::new_err(expected));
+            }
+            Some(top) => top.strip(),
+        };
+        let conditions = match conditions {
+            true => at_most.map_or(Conditions::Anywhere, AtMost::conditions),
+            false => Conditions::Nowhere,
+        };
         let measure = match least {
             "time" => Measure::Time,
             "distance" => Measure::Distance,
@@ -215,8 +227,7 @@ impl RegionFile {
                     .map_err(|e| error::of_region(&e))?,
                 None => self.region().planner(vehicle_id, policy, measure).map_err(|e| error::of_region(&e))?,
             };
-            let answer =
-                if conditions { planner.best_answer(&question, stop, || ()) } else { planner.answer(&question, stop) };
+            let answer = planner.best_answer(&question, conditions, stop, || ());
             let answer = answer.map_err(|e| error::of_question(&e));
             let (roads, driver) = (Arc::clone(planner.roads()), Arc::clone(planner.driver()));
             if planners.len() >= MOST_PLANNERS {

@@ -289,6 +289,21 @@ def ask_kept():
     return "no error"
 
 
+def test_a_route_may_rest_on_attested_places_alone(demo):
+    _, (start, end) = safe_turn(demo)
+    assert demo.route(TUG, start, end, at_most="attested").to_dict() == demo.route(TUG, start, end).to_dict()
+    # Nothing attests the vehicle here, so no condition is allowed.
+    for line in demo.edges(TRUCK, verdict="unsafe").to_geopandas().geometry.iloc[::9]:
+        middle = line.interpolate(0.5, normalized=True)
+        answer = demo.route(TRUCK, start, (middle.x, middle.y))
+        if answer.conditional is not None:
+            break
+    assert answer.conditional.conditions_attested is False
+    assert demo.route(TRUCK, start, (middle.x, middle.y), at_most="attested").conditional is None
+    with pytest.raises(ValueError, match='wider than `corridor`, or "attested"'):
+        demo.route(TUG, start, end, corridor="carriageway", at_most="lane")
+
+
 def test_routes_are_a_sequence(demo):
     _, (start, end) = safe_turn(demo)
     routes = demo.route(TUG, start, end)

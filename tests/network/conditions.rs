@@ -123,7 +123,7 @@ fn a_place_that_nothing_opens_on_one_way_may_be_open_on_another() {
     ] {
         let places = [from, to].map(|[lon, lat]| Position { lon, lat }).to_vec();
         let question = Question { places, snap_m: 100.0, alternatives: 0, tries: 30 };
-        let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+        let answer = planner.best_answer(&question, Conditions::Anywhere, &Stop::never(), || ()).unwrap();
         let found = answer.conditional.unwrap_or_else(|| panic!("{:?}", answer.nothing_helps));
         assert!(found.route.certificate.result.safe() && !found.conditions.is_empty());
         assert_eq!(answer.nothing_helps, []);
@@ -139,7 +139,7 @@ fn a_place_that_nothing_opens_is_named() {
     let places = vec![on(&region, "Wa"), on(&region, "aS")];
     let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
     let mut planner = region.planner(&driver, Measure::Distance);
-    let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+    let answer = planner.best_answer(&question, Conditions::Anywhere, &Stop::never(), || ()).unwrap();
     let edges = ["Wa", "aS"].map(|ends| ascii_map::edge(&region.network, ends));
     assert!(answer.routes.is_empty() && answer.conditional.is_none());
     assert_eq!(answer.nothing_helps, [PartKind::Turn { from: edges[0], to: edges[1] }]);
@@ -294,4 +294,38 @@ fn a_way_under_conditions_prefers_what_is_attested_and_says_who_does() {
             assert_eq!(condition.attested_by, Some(AttestedBy::Register), "{:?}", condition.at);
         }
     }
+}
+
+#[test]
+fn only_attested_places_may_lack_room_where_a_route_asks_for_that() {
+    let region = region(&block(), 3.0);
+    let numbers =
+        |ends: &[&str]| -> Vec<EdgeNo> { ends.iter().map(|ends| ascii_map::edge(&region.network, ends)).collect() };
+    let north = numbers(&["Wa", "aN", "Nn", "nb", "bE"]);
+    let places = vec![on(&region, "Wa"), on(&region, "bE")];
+    let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
+    // The turns that are attested, of the four on the way over the north.
+    let answer = |turns: &[[EdgeNo; 2]]| {
+        let edges = north.iter().map(|edge| edge.get()).collect();
+        let turns = turns.iter().map(|ends| ends.map(EdgeNo::get)).collect();
+        let mut driver = region.driver("AU-SEMI19");
+        driver.attested = Attested::new(&[Attestation { by: AttestedBy::Register, edges, turns }]);
+        let mut planner = region.planner(&driver, Measure::Distance);
+        planner.best_answer(&question, Conditions::WhereAttested, &Stop::never(), || ()).unwrap()
+    };
+    let turns: Vec<[EdgeNo; 2]> = north.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    let attested = answer(&turns).conditional.unwrap();
+    assert_eq!(attested.route.drive.edges, north);
+    assert!(!attested.conditions.is_empty() && attested.attested());
+    // Both ways round have conditions at their first corner. Nobody attests it on either.
+    let unattested = answer(&turns[1..]);
+    assert!(unattested.conditional.is_none(), "{:?}", unattested.conditional);
+    assert!(unattested.routes.is_empty() && !unattested.obstacles.unwrap().is_empty());
+    let anywhere = region.planner(&region.driver("AU-SEMI19"), Measure::Distance).best_answer(
+        &question,
+        Conditions::Anywhere,
+        &Stop::never(),
+        || (),
+    );
+    assert!(!anywhere.unwrap().conditional.unwrap().attested());
 }

@@ -219,7 +219,7 @@ fn a_way_under_conditions_keeps_to_its_lane_away_from_them() {
     let places = vec![on(&region, "AB"), on(&region, "CS")];
     let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
     let under_conditions = |planner: &mut Planner| {
-        let answer = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+        let answer = planner.best_answer(&question, Conditions::Anywhere, &Stop::never(), || ()).unwrap();
         assert!(answer.routes.is_empty());
         answer.conditional.unwrap()
     };

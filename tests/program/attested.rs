@@ -4,6 +4,7 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
+use crate::serve::http::Server;
 use netcert_testing::program::WorkFolder;
 
 const OHIO: [f64; 2] = [-83.0, 39.96];
@@ -94,6 +95,44 @@ fn a_condition_says_which_sign_attests_its_place() {
         .shows("Attested, not proved: National Network, semi-trailers of 53 ft");
     let told = place.netcert(&format!("explain {turn} --vehicle US-WB67 --format json")).succeeds().json();
     assert_eq!(told["signs"][0]["by"], "us-national-network-53", "{told:#}");
+}
+
+#[test]
+fn a_route_at_most_attested_lacks_room_only_where_a_sign_stands() {
+    let place = certified(OHIO, [&[SIGNED], &[SIGNED]]);
+    let way = format!("{} --at-most attested", around_the_corner(OHIO));
+    let answer = place.netcert(&format!("{way} --format json")).succeeds().json();
+    assert_eq!(answer["routes"], Value::Array(Vec::new()));
+    assert_eq!(answer["conditional"]["conditions_attested"], true);
+    place.netcert(&way).succeeds().shows("no certified route").shows("Every place of a condition is attested.");
+    let place = certified(OHIO, [&[SIGNED], &[]]);
+    let answer = place.netcert(&format!("{way} --format json")).succeeds().json();
+    assert_eq!(answer["conditional"], Value::Null);
+    assert_eq!(answer["obstacles"].as_array().unwrap().len(), 1);
+    place
+        .netcert(&way)
+        .succeeds()
+        .shows("What would have to become safe: 1 place")
+        .shows("Conditions were looked for only where a sign, a network or the register says that the vehicle goes.");
+    place.netcert(&format!("{way} --decision decision.html")).succeeds();
+    let sheet = String::from_utf8(place.read("decision.html")).unwrap();
+    assert!(sheet.contains("Measurements were looked for only where a sign or the register attests the vehicle."));
+    let anywhere = place.netcert(&format!("{} --format json", around_the_corner(OHIO))).succeeds().json();
+    assert_eq!(anywhere["conditional"]["conditions_attested"], false);
+}
+
+#[test]
+fn the_server_takes_at_most_attested() {
+    let server = Server::over(certified(OHIO, [&[SIGNED], &[SIGNED]]), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let asked = |at_most: &str| {
+        let [lon, lat] = OHIO;
+        let (from, to) = (format!("{},{lat}", lon - 0.0025), format!("{lon},{}", lat - 0.002));
+        server.json(&format!("/api/route?vehicle=US-WB67&policy=carriageway&from={from}&to={to}{at_most}"))
+    };
+    let served = asked("&at_most=attested");
+    assert_eq!((&served["at_most"], &served["conditional"]["conditions_attested"]), (&"attested".into(), &true.into()));
+    assert_eq!(asked("")["at_most"], Value::Null);
+    assert_eq!(server.json("/api/vehicles")[0]["may_be_attested"], true);
 }
 
 #[test]

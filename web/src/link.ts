@@ -2,7 +2,7 @@
 //
 // A link may come from anywhere. What cannot be read is ignored, and what the database does not have is replaced by a default.
 
-import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
+import type { AtMost, Evidence, Policy, Position, VerdictName } from "./api/types.ts";
 import { MOST_VIA, UNPLACED, type Camera, type ColourBy, type Places, type State } from "./state.ts";
 import { UNITS } from "./units.ts";
 import { CLASSES, EVIDENCE, VERDICTS } from "./words.ts";
@@ -55,7 +55,7 @@ export function read(hash: string, first: State, possible: Possible): State {
     evidence: known<Evidence>(EVIDENCE, get("width")) ?? "assumed",
     selected: /^[0-9]{1,20}$/.test(get("id")) ? get("id") : null,
     route: places(parts.get("route")),
-    atMost: known(possible.policies, get("most")),
+    atMost: known<AtMost>([...possible.policies, "attested"], get("most")),
     stats: get("stats") === "1",
     changes: possible.changes && get("changes") === "1",
     camera: readCamera(get("at")),

@@ -1,6 +1,6 @@
 // The state of the page. Every part reads it, changes it through `set`, and is told of changes.
 
-import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
+import type { AtMost, Evidence, Policy, Position, VerdictName } from "./api/types.ts";
 import type { Units } from "./units.ts";
 
 export type ColourBy = "margin" | "reason" | "evidence" | "strip";
@@ -41,7 +41,7 @@ export interface State {
   /** The places of a route, at least two; null if no route is asked for. */
   route: Places | null;
   /** The widest strip that a route may use where that of the policy is not enough; null: none. */
-  atMost: Policy | null;
+  atMost: AtMost | null;
   stats: boolean;
   /** Whether the changes since the older database are drawn over a muted map. */
   changes: boolean;

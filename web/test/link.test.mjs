@@ -31,6 +31,11 @@ test("everything in a link comes back", () => {
   assert.deepEqual(read(write(state, first), first, possible), state);
 });
 
+test("a route may rest on attested places, which are no policy", () => {
+  assert.equal(read("#most=attested", first, possible).atMost, "attested");
+  assert.equal(read("#most=direction", first, possible).atMost, null);
+});
+
 test("without an older database a link shows no changes", () => {
   assert.equal(read("#changes=1", first, { ...possible, changes: false }).changes, false);
   assert.deepEqual(read("#changes=yes", first, possible), first);

@@ -221,6 +221,26 @@ inPage("what blocks a route is numbered, with its kind, its reason and what that
   await page.waitForSelector(".route .verdict.is-blocked");
 });
 
+inPage("a vehicle that the law names may rest on attested places, and its way says so", "#v=AU-SEMI19", async (page) => {
+  await page.route(/\/api\/vehicles$/, async (asked) => {
+    const vehicles = await (await fetch(`${all.address}/api/vehicles`)).json();
+    await asked.fulfill({ json: vehicles.map((one) => ({ ...one, may_be_attested: one.id === "AU-SEMI19" })) });
+  });
+  const answer = await (await fetch(`${all.address}/api/route?vehicle=AU-SEMI19&policy=lane&from=126.026942,-30.203315&to=126.046615,-30.205563&snap=500`)).json();
+  assert.equal(answer.conditional.conditions_attested, false);
+  const by = { by: "register", name: null, tags: null, law: null };
+  const conditional = { ...answer.conditional, conditions_attested: true, conditions: answer.conditional.conditions.map((one) => ({ ...one, attested: by })) };
+  await page.route(/at_most=attested/, (asked) => asked.fulfill({ json: { ...answer, conditional, at_most: "attested" } }));
+  await page.goto(`${all.address}/#v=AU-SEMI19&route=126.026942,-30.203315;126.046615,-30.205563`);
+  await page.reload();
+  await page.waitForSelector(".route .verdict:not(.is-safe)", { timeout: 120_000 });
+  assert.deepEqual(await page.locator("#trip-room option").allTextContents(), ["nothing more", "the oncoming lane, too", "places where it is attested"]);
+  await page.selectOption("#trip-room", "attested");
+  await page.getByText("Each place is attested: the law or the register says that such a vehicle goes there. That is no proof.").waitFor();
+  assert.match(await page.locator(".command code").textContent(), /--at-most attested$/);
+  assert.match(await page.evaluate(() => location.hash), /most=attested/);
+});
+
 inPage("a route may use the oncoming lane where its own is not enough, and says where", "#v=AU-SEMI19&route=126.026942,-30.203315;126.046615,-30.205563", async (page) => {
   await page.waitForSelector(".route .verdict:not(.is-safe)", { timeout: 120_000 });
   assert.deepEqual(await page.locator("#trip-room option").allTextContents(), ["nothing more", "the oncoming lane, too"]);

@@ -52,7 +52,7 @@ impl Attested {
     }
 
     /// Who attests all of these edges.
-    pub(super) fn road(&self, edges: &[EdgeNo]) -> Option<AttestedBy> {
+    pub(crate) fn road(&self, edges: &[EdgeNo]) -> Option<AttestedBy> {
         let of = |edge: &EdgeNo| self.edges.get(edge).map_or(&[][..], Vec::as_slice);
         let (first, others) = edges.split_first()?;
         of(first).iter().copied().find(|by| others.iter().all(|edge| of(edge).contains(by)))

@@ -1,11 +1,12 @@
 //! The best answer that there is: certified routes, else a route under conditions beside what blocks.
 
+use super::at_most::Conditions;
 use super::conditions::Conditional;
 use super::plan::{Answer, Planner, Question, Unanswered};
 use crate::stop::Stop;
 
 impl Planner {
-    /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
+    /// Certified routes, or else a route under conditions, where `conditions` allows them. `searching` is called before the search for conditions, which takes
     /// longer. A planner that climbs looks for conditions on the widest strip; the way that they open climbs, too. A place that is near no safe
     /// road may be near a lawful one. Where `stop` is told during that search, the answer is what blocks the way.
     ///
@@ -14,16 +15,20 @@ impl Planner {
     pub fn best_answer(
         &mut self,
         question: &Question,
+        conditions: Conditions,
         stop: &Stop,
         searching: impl FnOnce(),
     ) -> Result<Answer, Unanswered> {
+        if conditions == Conditions::Nowhere {
+            return self.answer(question, stop);
+        }
         if self.widest.is_some() {
             let climbed = match self.certified_routes(question, stop) {
                 Err(Unanswered::Place(_)) => Answer::default(),
                 answer => answer?,
             };
             return match climbed.routes.is_empty() {
-                true => self.on_the_widest(climbed, |widest| widest.best_answer(question, stop, searching)),
+                true => self.on_the_widest(climbed, |widest| widest.best_answer(question, conditions, stop, searching)),
                 false => Ok(climbed),
             };
         }
@@ -35,7 +40,7 @@ impl Planner {
             return Ok(certified?);
         }
         let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
-        let searched = match self.search_conditions(question, refuted, stop, searching) {
+        let searched = match self.search_conditions(question, conditions, refuted, stop, searching) {
             // What blocks the way is known, and stays an answer.
             Err(Unanswered::Stopped(_)) if certified.is_ok() => {
                 return Ok(Answer { conditions_cut_short: true, ..certified? });

@@ -1,10 +1,16 @@
 //! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
 
 use super::assemble::{DrivenWay, PartKind};
-use super::conditions::{Conditional, ConditionalAccess, Fitted, Fitter, RoadPrice, Unfit, tell_who_attests};
+use super::at_most::Conditions;
+use super::conditions::{
+    Condition, Conditional, ConditionalAccess, Fitted, Fitter, RoadPrice, Suppositions, Unfit, tell_who_attests,
+};
+use super::drive::Drive;
 use super::graph::BARRED;
 use super::obstacles::Refutation;
 use super::plan::{Planner, Question, Unanswered};
+use super::route::Route;
+use super::search::FoundWay;
 use super::snap::Snapped;
 use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
@@ -33,20 +39,21 @@ impl Planner {
         refuted: &[Refutation],
         stop: &Stop,
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
-        self.search_conditions(question, refuted, stop, || ())
+        self.search_conditions(question, Conditions::Anywhere, refuted, stop, || ())
     }
 
-    /// As [`Self::under_conditions`]. `searching` is called when all places are on the roads, before the search, which takes long.
+    /// As [`Self::under_conditions`], with conditions where `conditions` allows them. `searching` is called when all places are on the roads, before the search, which takes long.
     pub(crate) fn search_conditions(
         &mut self,
         question: &Question,
+        conditions: Conditions,
         refuted: &[Refutation],
         stop: &Stop,
         searching: impl FnOnce(),
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
         let access = |by: RoadPrice| {
-            let mut access = ConditionalAccess::new(self.graph.roads(), &self.driver, refuted, by);
+            let mut access = ConditionalAccess::new(self.graph.roads(), &self.driver, refuted, by, conditions);
             self.below.iter().for_each(|below| below.add_prices(&mut access.search, &self.graph));
             access
         };
@@ -89,36 +96,60 @@ impl Planner {
             *left -= 1;
             let Some((mut found, start, end)) = self.way(&access.search, &snapped)? else { return Ok(Err(hopeless)) };
             let way = DrivenWay { drive: &found.drive, start, end };
-            match fitter.fit(&way, &access.lacking, stop)? {
-                Ok(Fitted { drive, mut certified, supposed, choices, suffices }) => {
-                    found.drive = drive;
-                    if let Some(below) = &self.below {
-                        let way = DrivenWay { drive: &found.drive, start, end };
-                        let climbed = fitter.climbed(&way, &supposed, &choices, &below.climbing, stop)?;
-                        certified = climbed.unwrap_or(certified);
-                    }
-                    let kerbs = &self.driver.permits.settings.kerbs;
-                    let mut conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
-                    tell_who_attests(&self.driver.attested, self.network(), &found.drive, &mut conditions);
-                    let route = self.route(&found, start, end, certified);
-                    return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
-                }
-                Err(Unfit(places)) => {
-                    let mut barred = false;
-                    for at in places {
-                        barred |= access.bar(self.graph.movements(), at);
-                        if !hopeless.places.contains(&at) {
-                            hopeless.places.push(at);
+            let at_fault = match fitter.fit(&way, &access.lacking, stop)? {
+                Ok(fitted) => {
+                    found.drive.clone_from(&fitted.drive);
+                    let conditions = self.conditions(&found.drive, &fitted.supposed);
+                    match access.not_allowed(self.graph.roads(), &found.drive, &conditions) {
+                        Some(places) => places,
+                        None => {
+                            let suffices = fitted.suffices;
+                            let route = self.fitted_route(fitter, &found, [start, end], fitted, stop)?;
+                            return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                         }
                     }
-                    // If nothing can be left out, the next search would find the same way.
-                    if !barred {
-                        break;
-                    }
                 }
+                Err(Unfit(places)) => places,
+            };
+            let mut barred = false;
+            for at in at_fault {
+                barred |= access.bar(self.graph.movements(), at);
+                if !hopeless.places.contains(&at) {
+                    hopeless.places.push(at);
+                }
+            }
+            // If nothing can be left out, the next search would find the same way.
+            if !barred {
+                break;
             }
         }
         hopeless.gave_up = true;
         Ok(Err(hopeless))
+    }
+
+    /// What has to hold on a way, with who attests each place.
+    fn conditions(&self, drive: &Drive, supposed: &Suppositions) -> Vec<Condition> {
+        let kerbs = &self.driver.permits.settings.kerbs;
+        let mut conditions = supposed.conditions(self.network(), kerbs, &drive.edges);
+        tell_who_attests(&self.driver.attested, self.network(), drive, &mut conditions);
+        conditions
+    }
+
+    /// The route on a way that fits. It climbs if the planner knows a ladder.
+    fn fitted_route(
+        &self,
+        fitter: &mut Fitter,
+        found: &FoundWay,
+        [start, end]: [f64; 2],
+        fitted: Fitted,
+        stop: &Stop,
+    ) -> Result<Route, Stopped> {
+        let Fitted { supposed, choices, mut certified, .. } = fitted;
+        if let Some(below) = &self.below {
+            let way = DrivenWay { drive: &found.drive, start, end };
+            let climbed = fitter.climbed(&way, &supposed, &choices, &below.climbing, stop)?;
+            certified = climbed.unwrap_or(certified);
+        }
+        Ok(self.route(found, start, end, certified))
     }
 }

@@ -29,6 +29,7 @@
 //! | `title` | titles and places of edges, turns and passages |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route, and on which way |
+//! | `at_most` | how high a route may climb |
 //! | `attested` | where a sign or the register says that the vehicle goes |
 //! | `conditions` | what has to hold on site so that a way is certified |
 //! | `conditional_search` | the way with the fewest and smallest conditions |
@@ -53,6 +54,7 @@ use netcert_rows::settings;
 use netcert_store as store;
 
 mod assemble;
+mod at_most;
 mod attested;
 mod bans;
 mod best;
@@ -92,6 +94,7 @@ mod turning;
 mod whole;
 
 pub use assemble::{AssemblyError, DrivenWay, PartKind, RoutePart, RoutePath, assemble, passes_over};
+pub use at_most::{AtMost, Conditions};
 pub use attested::Attested;
 pub use bans::{Bans, Within};
 pub use conditional_search::Hopeless;

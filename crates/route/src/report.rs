@@ -157,6 +157,7 @@ fn conditional_members(network: &Network, model: &Model, conditional: &Condition
         "certificate": certificate_members(route, &conditions),
         "conditions": conditions,
         "conditions_suffice": conditional.suffices,
+        "conditions_attested": conditional.attested(),
     });
     with(route_members(network, model, route), own)
 }

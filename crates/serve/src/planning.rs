@@ -11,8 +11,8 @@ use super::memo::Recent;
 use super::problem::Problem;
 use super::region::{CertifiedVehicle, RegionState};
 use crate::route::{
-    self, Answer, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices, SnapError, Speeds,
-    Unanswered,
+    self, Answer, AtMost, Conditions, Driver, Ladder, Measure, NoDriver, Planner, Question, Roads, RungPrices,
+    SnapError, Speeds, Unanswered,
 };
 use crate::stop::Stop;
 use crate::words::{Named as _, verdict_words};
@@ -36,8 +36,8 @@ pub(super) struct RouteQuestion {
     pub(super) question: Question,
     /// Number of routes, from the best on, whose drive is wanted.
     pub(super) drives: usize,
-    /// Whether a route under conditions is wanted where no route is certified.
-    pub(super) conditions: bool,
+    /// Where a route may have conditions, if no route is certified.
+    pub(super) conditions: Conditions,
     /// Told to stop when nobody waits for the answer any more.
     pub(super) stop: Stop,
 }
@@ -147,10 +147,7 @@ impl PlannerThread {
     }
 
     fn answer(&self, planner: &mut Planner, ride: &RouteQuestion) -> Result<PlannedAnswer, Problem> {
-        let answer = match ride.conditions {
-            true => planner.best_answer(&ride.question, &ride.stop, || ()),
-            false => planner.answer(&ride.question, &ride.stop),
-        };
+        let answer = planner.best_answer(&ride.question, ride.conditions, &ride.stop, || ());
         let answer = answer.map_err(|unanswered| match unanswered {
             Unanswered::Place(error) => self.no_road(planner, ride, &error),
             Unanswered::Stopped(stopped) => stopped.into(),
@@ -176,7 +173,11 @@ impl PlannerThread {
         let line = answer.blocked.as_ref().map(|way| way.line(network)).filter(|line| line.len() > 1);
         members["blocked_way"] = json!(line.map(|line| json!({"type": "LineString", "coordinates": line})));
         members["policy"] = json!(self.driver.permits.settings.policy.name());
-        members["at_most"] = json!(self.ladder.as_ref().map(|ladder| ladder.widest.permits.settings.policy.name()));
+        let widest = self.ladder.as_ref().map(|ladder| ladder.widest.permits.settings.policy.name());
+        members["at_most"] = match ride.conditions {
+            Conditions::WhereAttested => json!(AtMost::Attested.name()),
+            Conditions::Nowhere | Conditions::Anywhere => json!(widest),
+        };
         ids_as_text(&mut members);
         Ok(PlannedAnswer { members, found: answer })
     }

@@ -13,7 +13,9 @@ use netcert::corridor::FileCorridor;
 use netcert::osm::facts::Policy;
 use netcert::picture::{self, CaseFields, DecisionBasis, SheetStyle};
 use netcert::region::Region;
-use netcert::route::{self, Answer, Comparison, GpxFacts, Measure, Peer, Planner, Position, Question, RungPrices};
+use netcert::route::{
+    self, Answer, AtMost, Comparison, Conditions, GpxFacts, Measure, Peer, Planner, Position, Question, RungPrices,
+};
 use netcert::stop::Stop;
 use netcert::words::{Named, at_local_time};
 
@@ -80,9 +82,10 @@ pub(crate) struct Route {
     #[arg(long)]
     certified_only: bool,
     /// Use more of the road where the policy's strip is not enough, but at most this: all lanes of the direction, or the whole
-    /// carriageway with its oncoming lane. The answer says where, for how long and how far beyond the lane.
-    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>(), conflicts_with = "relative_to")]
-    at_most: Option<Policy>,
+    /// carriageway with its oncoming lane. The answer says where, for how long and how far beyond the lane. With `attested`, a route
+    /// without a certificate may have conditions only where a sign, a network or the register says that the vehicle goes.
+    #[arg(long, value_name = "RUNG", value_parser = word::<AtMost>(), conflicts_with = "relative_to")]
+    at_most: Option<AtMost>,
     #[command(flatten)]
     relative: RelativeArgs,
     /// The output format.
@@ -211,8 +214,11 @@ impl Route {
 
     fn planner(&self, inputs: &RoutingInputs, measure: Measure, session: &Session) -> anyhow::Result<Planner> {
         let (roads, speeds) = (&inputs.roads, &inputs.speeds);
-        let Some(top) = self.at_most else {
-            return Ok(Planner::new(roads, Arc::clone(&inputs.driver), speeds.clone(), measure));
+        let level = || Ok(Planner::new(roads, Arc::clone(&inputs.driver), speeds.clone(), measure));
+        let top = match self.at_most {
+            None => return level(),
+            Some(AtMost::Attested) if inputs.settings().policy == Policy::Carriageway => return level(),
+            Some(top) => top.strip(),
         };
         let ladder = inputs.ladder(session, &self.inputs.vehicle, top, "route")?;
         Ok(Planner::climbing(roads, &ladder, speeds, measure, &RungPrices::builtin()?))
@@ -224,13 +230,18 @@ impl Route {
             let wider = "`--at-most carriageway` would use more of the road where it must, the oncoming lane included, and say where.";
             writeln!(out, "{}\n", wrapped(wider, ""))?;
         }
+        if answer.routes.is_empty() && answer.conditional.is_none() && self.conditions() == Conditions::WhereAttested {
+            let only = "Conditions were looked for only where a sign, a network or the register says that the vehicle goes. Without \
+                        `--at-most attested` they are looked for anywhere.";
+            writeln!(out, "{}\n", wrapped(only, ""))?;
+        }
         writeln!(out, "{}", wrapped(&self.scope(inputs, answer), ""))
     }
 
     /// What the answer holds for.
     fn scope(&self, inputs: &RoutingInputs, answer: &Answer) -> String {
         let policy = inputs.settings().policy.name();
-        let policy = match self.at_most.map(Policy::name) {
+        let policy = match self.at_most.map(|top| top.strip().name()) {
             Some(top) if answer.routes.is_empty() => format!("{top} policy"),
             Some(top) => format!("{policy} policy, where that is not enough up to {top}"),
             None => format!("{policy} policy"),
@@ -244,12 +255,18 @@ impl Route {
 
     /// Certified routes, or else a route under conditions, if one is wanted.
     fn answer(&self, planner: &mut Planner, question: &Question, session: &Session) -> anyhow::Result<Answer> {
-        if self.certified_only {
-            return session.progress.in_time("route", |stop| Ok(planner.answer(question, stop)?));
-        }
         let say =
             || session.progress.say("No route is certified. Looking for one under conditions, which takes longer");
-        session.progress.in_time("route", |stop| Ok(planner.best_answer(question, stop, say)?))
+        let conditions = self.conditions();
+        session.progress.in_time("route", |stop| Ok(planner.best_answer(question, conditions, stop, say)?))
+    }
+
+    /// Where a way may have conditions.
+    fn conditions(&self) -> Conditions {
+        match self.at_most {
+            _ if self.certified_only => Conditions::Nowhere,
+            at_most => at_most.map_or(Conditions::Anywhere, AtMost::conditions),
+        }
     }
 
     /// The reference vehicle, if one is to be compared with.
@@ -310,8 +327,8 @@ impl Route {
             read_by: origin.netcert_version.clone(),
             measurements: origin.measurements,
             at: origin.at.clone(),
-            conditions_sought: !self.certified_only,
-            strips: [own, self.at_most.unwrap_or(own)],
+            conditions: self.conditions(),
+            strips: [own, self.at_most.map_or(own, AtMost::strip)],
         };
         let vehicle = &inputs.driver.model.vehicle;
         let units = self.decision_units.into();

@@ -76,8 +76,15 @@ fn attested(out: &mut dyn Write, conditional: &Conditional) -> std::io::Result<(
         let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
         writeln!(out, "{}", wrapped(&format!("Attested, {}: {by}.", numbers.join(", ")), "  "))?;
     }
-    let told =
-        "Attested is not proved: the law or a person says that such a vehicle goes there, and nothing here says how.";
+    let told = match conditional.attested() {
+        true => {
+            "Every place of a condition is attested. Attested is not proved: the law or a person says that such a vehicle goes there, and \
+             nothing here says how."
+        }
+        false => {
+            "Attested is not proved: the law or a person says that such a vehicle goes there, and nothing here says how."
+        }
+    };
     writeln!(out, "{}\n", wrapped(told, "  "))
 }
 

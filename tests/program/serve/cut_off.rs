@@ -9,7 +9,8 @@ use netcert::explain::{explain_edge, explain_turn};
 use netcert::network::{EdgeNo, Movement, Network};
 use netcert::osm::facts::Policy;
 use netcert::route::{
-    self, Driver, MadeTurns, Measure, Planner, Position, Question, Roads, Speeds, Strokes, TurnPiece, Turns, Unanswered,
+    self, Conditions, Driver, MadeTurns, Measure, Planner, Position, Question, Roads, Speeds, Strokes, TurnPiece,
+    Turns, Unanswered,
 };
 use netcert::settings::Settings;
 use netcert::stet::{self, Model};
@@ -151,7 +152,7 @@ fn a_route_under_conditions_is_whole_or_is_not_there() {
     let (mut asked, mut searched) = (1, 0);
     let whole = loop {
         let mut begun = false;
-        match planner.best_answer(&question, &Stop::after(asked), || begun = true) {
+        match planner.best_answer(&question, Conditions::Anywhere, &Stop::after(asked), || begun = true) {
             Ok(answer) if answer.conditions_cut_short => {
                 assert!(begun && answer.routes.is_empty() && answer.conditional.is_none());
                 assert!(answer.obstacles.is_some_and(|obstacles| !obstacles.is_empty()));
@@ -164,7 +165,7 @@ fn a_route_under_conditions_is_whole_or_is_not_there() {
     };
     assert!(searched > 1, "it was never stopped while it looked for conditions");
     assert!(whole.routes.is_empty() && !whole.conditional.as_ref().unwrap().conditions.is_empty());
-    let again = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+    let again = planner.best_answer(&question, Conditions::Anywhere, &Stop::never(), || ()).unwrap();
     let said = |answer| route::json(&roads.network, &model, answer).to_string();
     assert_eq!(said(&whole), said(&again));
 }

@@ -1,6 +1,7 @@
 // The server's API with types. Every call can be aborted. A refusal becomes a `ServerProblem` whose message can be shown.
 
 import type {
+  AtMost,
   Changes,
   EvidenceChange,
   Explanation,
@@ -67,7 +68,7 @@ export interface Question {
 /** The same for a route. */
 export interface RouteQuestion extends Question {
   /** The widest strip that the route may use where that of the policy is not enough; null: none. */
-  atMost: Policy | null;
+  atMost: AtMost | null;
 }
 
 /** The greatest number of changes that the server gives at once. */

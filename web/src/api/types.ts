@@ -3,6 +3,9 @@
 // Lengths are metres, positions [longitude, latitude] in degrees. Ids of edges and turns are text: they have 63 bits.
 
 export type Policy = "lane" | "direction" | "carriageway";
+
+/** The highest rung of a route: its widest strip, or with conditions only where the vehicle is attested. */
+export type AtMost = Policy | "attested";
 export type VerdictName = "safe" | "unsafe" | "forbidden" | "unknown";
 /** Who may change the register of measurements over the server. */
 export type Editing = "off" | "local" | "token";
@@ -114,6 +117,8 @@ export interface Vehicle {
   height_m: number | null;
   gross_mass_t: number | null;
   certified: Policy[];
+  /** Whether a designation or the register names the vehicle. */
+  may_be_attested: boolean;
   units: Unit[];
 }
 
@@ -400,6 +405,8 @@ export interface Condition {
 export interface ConditionalRoute extends Omit<Route, "drive" | "safe"> {
   safe: false;
   conditions: Condition[];
+  /** Whether the vehicle is attested at the place of every condition. */
+  conditions_attested: boolean;
   /** Whether measurements exactly as named certify the route. */
   conditions_suffice: boolean;
 }

@@ -2,7 +2,7 @@
 // at once, and the route under conditions when it is found.
 
 import { SNAP_M, ServerProblem, api, type RouteQuestion } from "../api/client.ts";
-import type { Policy, Position, RouteAnswer } from "../api/types.ts";
+import type { AtMost, Policy, Position, RouteAnswer } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { Ends } from "../map/ends.ts";
 import { palettes } from "../map/palette.ts";
@@ -75,9 +75,15 @@ export class Routing {
     return all.slice(all.indexOf(policy) + 1).filter((one) => this.context.region.policies.includes(one));
   }
 
+  /** How high routes may climb: wider strips, and for some vehicles places at which they are attested. */
+  get #rungs(): AtMost[] {
+    const attested = vehicleOf(this.context, question(this.context).vehicle)?.may_be_attested;
+    return attested ? [...this.#wider, "attested"] : this.#wider;
+  }
+
   get #question(): RouteQuestion {
     const { atMost } = this.context.store.state;
-    return { ...question(this.context), atMost: atMost && this.#wider.includes(atMost) ? atMost : null };
+    return { ...question(this.context), atMost: atMost && this.#rungs.includes(atMost) ? atMost : null };
   }
 
   get #places(): Position[] {
@@ -117,7 +123,7 @@ export class Routing {
     document.body.classList.toggle("has-route", route !== null);
     if (route === null) return;
     this.#trip.show(route);
-    this.#trip.offer(this.#wider, this.#question.atMost);
+    this.#trip.offer(this.#rungs, this.#question.atMost);
     this.#panel.waiting(route);
     if (all) void this.#ask(all);
   }

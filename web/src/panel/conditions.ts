@@ -65,6 +65,9 @@ export function conditionalHead(route: ConditionalRoute): [string, ...Node[]] {
       { class: "headline-words" },
       `No route is certified. This one would be, if ${count === 1 ? "the following" : "all of the following"} were so on site. Nothing here says that it is.`,
     ),
+    ...(route.conditions_attested
+      ? [h("p", { class: "headline-words" }, "Each place is attested: the law or the register says that such a vehicle goes there. That is no proof.")]
+      : []),
     ...(route.conditions_suffice
       ? []
       : [h("p", { class: "headline-words" }, "Measured exactly so, it may still ask for more. Measure more room where there is some.")]),

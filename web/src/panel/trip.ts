@@ -1,6 +1,6 @@
 // The places of a route as fields of text: a road by its name or number, or a coordinate. Between beginning and end there may be stops.
 
-import type { Policy, Position } from "../api/types.ts";
+import type { AtMost, Position } from "../api/types.ts";
 import { coordinateText } from "../coordinate.ts";
 import { MOST_VIA, type Places } from "../state.ts";
 import { h } from "../ui/dom.ts";
@@ -16,10 +16,11 @@ export function roleOf(index: number, count: number): string {
 }
 
 /** What a route may use beside the strip of its policy. */
-const roomWords: Record<Policy, string> = {
+const roomWords: Record<AtMost, string> = {
   lane: "its own lane",
   direction: "all lanes of its direction",
   carriageway: "the oncoming lane, too",
+  attested: "places where it is attested",
 };
 
 export class Trip {
@@ -31,17 +32,17 @@ export class Trip {
   /** How much of the road a route may use, where its vehicle could use more. */
   readonly room = h("div", { class: "trip-room" });
 
-  constructor(private readonly change: (places: Places) => void, private readonly allow: (atMost: Policy | null) => void) {}
+  constructor(private readonly change: (places: Places) => void, private readonly allow: (atMost: AtMost | null) => void) {}
 
-  /** Offers the strips that are wider than the policy's. */
-  offer(wider: readonly Policy[], chosen: Policy | null): void {
+  /** Offers the rungs above the policy's strip. */
+  offer(wider: readonly AtMost[], chosen: AtMost | null): void {
     this.room.hidden = wider.length === 0;
-    const option = (value: Policy | null, text: string) => h("option", { value: value ?? "", selected: value === chosen }, text);
+    const option = (value: AtMost | null, text: string) => h("option", { value: value ?? "", selected: value === chosen }, text);
     const select = h(
       "select",
-      { id: "trip-room", onchange: () => this.allow((select.value || null) as Policy | null) },
+      { id: "trip-room", onchange: () => this.allow((select.value || null) as AtMost | null) },
       option(null, "nothing more"),
-      ...wider.map((policy) => option(policy, roomWords[policy])),
+      ...wider.map((rung) => option(rung, roomWords[rung])),
     );
     this.room.replaceChildren(h("label", { for: "trip-room" }, "Where it is too narrow, use"), select);
   }

@@ -16,7 +16,9 @@ use crate::network::{Network, destination_words};
 use crate::osm::facts::Policy;
 use crate::words::Named as _;
 use netcert_base::vehicle::Vehicle;
-use netcert_route::{Answer, Conditional, LimitedStretch, Obstacle, PartKind, Position, Route, Snapped, place, title};
+use netcert_route::{
+    Answer, Conditional, Conditions, LimitedStretch, Obstacle, PartKind, Position, Route, Snapped, place, title,
+};
 
 /// More than this is missing where no bound holds, metres.
 const MOST_MISSING_M: f64 = 100.0;
@@ -47,8 +49,8 @@ pub struct DecisionBasis {
     pub measurements: usize,
     /// The time of the journey, local time. `None`: of all times together.
     pub at: Option<String>,
-    /// Whether a way under conditions was looked for where none is certified.
-    pub conditions_sought: bool,
+    /// Where a way might have conditions.
+    pub conditions: Conditions,
     /// The strip that the vehicle may use, and the widest one if the way may climb.
     pub strips: [Policy; 2],
 }
@@ -190,10 +192,13 @@ fn not_certified(answer: &Answer, basis: &DecisionBasis) -> String {
     } else {
         "On every way "
     };
-    let conditions = match (basis.conditions_sought, answer.conditions_cut_short) {
-        (false, _) => " Nobody asked whether measurements would help.",
-        (true, true) => " The search for measurements that would help was ended before it was through.",
-        (true, false) => " No measurements were found that would help.",
+    let conditions = match (basis.conditions, answer.conditions_cut_short) {
+        (Conditions::Nowhere, _) => " Nobody asked whether measurements would help.",
+        (_, true) => " The search for measurements that would help was ended before it was through.",
+        (Conditions::WhereAttested, false) => {
+            " Measurements were looked for only where a sign or the register attests the vehicle. None were found that would help."
+        }
+        (Conditions::Anywhere, false) => " No measurements were found that would help.",
     };
     format!(
         "{searched}some place is forbidden to this vehicle, or it cannot be proved that the vehicle stays on the road there. The cheapest set of \

@@ -58,6 +58,14 @@ pub struct Conditional {
     pub snapped: Vec<Snapped>,
 }
 
+impl Conditional {
+    /// Whether somebody attests the place of every condition.
+    #[must_use]
+    pub fn attested(&self) -> bool {
+        self.conditions.iter().all(|condition| condition.attested_by.is_some())
+    }
+}
+
 /// Something that has to be so on site.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {

@@ -3,11 +3,14 @@
 use rustc_hash::FxHashSet;
 
 use super::way_roads::goes_on;
+use super::{Condition, ConditionAt};
 use crate::assemble::PartKind;
+use crate::at_most::Conditions;
 use crate::attested::Attested;
+use crate::drive::{Drive, Join};
 use crate::driver::Driver;
 use crate::graph::{Access, BARRED};
-use crate::network::{EdgeNo, Movements, Network};
+use crate::network::{EdgeNo, MovementKind, Movements, Network};
 use crate::obstacles::{self, CENTIMETRE, Refutation};
 use crate::osm::NodeId;
 use crate::permits::Permit;
@@ -37,6 +40,7 @@ pub(crate) struct ConditionalAccess {
     pub(crate) lacking: Access,
     /// What a search pays.
     pub(crate) search: Access,
+    allowed: Conditions,
 }
 
 /// What a search pays for a road that lacks room.
@@ -49,8 +53,15 @@ pub(crate) enum RoadPrice {
 }
 
 impl ConditionalAccess {
-    /// The access for a vehicle. `refuted` are the ways that failed as a whole without conditions.
-    pub(crate) fn new(roads: &Roads, driver: &Driver, refuted: &[Refutation], by: RoadPrice) -> Self {
+    /// The access for a vehicle. `refuted` are the ways that failed as a whole without conditions. What lacks room is barred where `allowed`
+    /// allows no conditions.
+    pub(crate) fn new(
+        roads: &Roads,
+        driver: &Driver,
+        refuted: &[Refutation],
+        by: RoadPrice,
+        allowed: Conditions,
+    ) -> Self {
         let (network, movements) = (&roads.network, &roads.movements);
         let mut lacking =
             driver.permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
@@ -60,13 +71,58 @@ impl ConditionalAccess {
                 *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
             }
         }
+        if allowed == Conditions::WhereAttested {
+            bar_unattested(&driver.attested, movements, &mut lacking);
+        }
         prefer_measured(network, movements, &mut lacking);
         prefer_attested(&driver.attested, movements, &mut lacking);
         let search = match by {
             RoadPrice::ByEdge => lacking.clone(),
             RoadPrice::ByRoad => by_road(roads, &lacking),
         };
-        Self { lacking, search }
+        Self { lacking, search, allowed }
+    }
+
+    /// What of a way has to be left out, because it leads to conditions that are not allowed: of all that lacks room, the nearest to each
+    /// condition at a place that nobody attests. `None` if all conditions are allowed.
+    pub(crate) fn not_allowed(
+        &mut self,
+        roads: &Roads,
+        drive: &Drive,
+        conditions: &[Condition],
+    ) -> Option<Vec<PartKind>> {
+        let unattested = |condition: &&Condition| condition.attested_by.is_none();
+        if self.allowed != Conditions::WhereAttested || !conditions.iter().any(|one| unattested(&one)) {
+            return None;
+        }
+        let first = drive.edges.first().map(|&edge| PartKind::Edge(edge));
+        let turns = drive.joins().flat_map(|Join { from, to, .. }| [PartKind::Turn { from, to }, PartKind::Edge(to)]);
+        let place = |at: EdgeNo| drive.edges.iter().position(|&edge| edge == at).unwrap_or(0);
+        let mut lacking = Vec::new();
+        for at in first.into_iter().chain(turns) {
+            let along = match at {
+                PartKind::Edge(edge) => 2 * place(edge),
+                PartKind::Turn { to, .. } => (2 * place(to)).saturating_sub(1),
+            };
+            if obstacles::slot(&mut self.lacking, &roads.movements, at).is_some_and(|price| *price > 0) {
+                lacking.push((along, at));
+            }
+        }
+        let ends_at = |node: NodeId| {
+            let ends = |&edge: &EdgeNo| roads.network.edges.get(edge.index()).is_some_and(|edge| edge.to_node == node);
+            drive.edges.iter().position(ends).unwrap_or(0)
+        };
+        let nearest = |condition: &Condition| {
+            let along = match &condition.at {
+                ConditionAt::Road(edges) => edges.first().map_or(0, |&edge| 2 * place(edge)),
+                ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => 2 * ends_at(*node) + 1,
+            };
+            lacking.iter().min_by_key(|(at, _)| at.abs_diff(along)).map(|(_, at)| *at)
+        };
+        let mut places: Vec<PartKind> = conditions.iter().filter(unattested).filter_map(nearest).collect();
+        places.sort_unstable();
+        places.dedup();
+        Some(places)
     }
 
     /// Bars a place. Returns whether it was not barred before.
@@ -131,6 +187,27 @@ fn prefer_attested(attested: &Attested, movements: &Movements, access: &mut Acce
         let (edge, turn) = (|edge| attested.edge(edge).is_some(), |from, to| attested.turn(from, to).is_some());
         make_cheaper(movements, access, ATTESTED_SHARE, edge, turn);
     }
+}
+
+/// Bars what lacks room where nobody attests that the vehicle goes.
+fn bar_unattested(attested: &Attested, movements: &Movements, access: &mut Access) {
+    let bar = |price: &mut u64| *price = if *price > 0 { BARRED } else { 0 };
+    let no_edge = |edge: EdgeNo| attested.edge(edge).is_none();
+    let no_turn = |from, to| attested.turn(from, to).is_none();
+    EdgeNo::all().zip(&mut access.edges).filter(|(no, _)| no_edge(*no)).for_each(|(_, price)| bar(price));
+    for (movement, price) in movements.all().iter().zip(&mut access.movements) {
+        let (from, to) = (movement.from, movement.to);
+        let attested = match movement.kind {
+            // Straight on there is no turn that somebody could attest.
+            MovementKind::StraightOn => attested.road(&[from, to]).is_some(),
+            MovementKind::Turn | MovementKind::UTurn => !no_turn(from, to),
+        };
+        if !attested {
+            bar(price);
+        }
+    }
+    let passages = movements.passages().iter().zip(&mut access.passages);
+    passages.filter(|(p, _)| no_turn(p.from, p.to)).for_each(|(_, price)| bar(price));
 }
 
 /// Makes what lacks room cost a part of its price, on these edges and turns.

@@ -14,7 +14,7 @@ use super::{GEOJSON, SCOPE, answered};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::picture::{self, CaseFields, DecisionBasis, SheetStyle, Units};
-use crate::route::{self, Conditional, Measure, Question};
+use crate::route::{self, AtMost, Conditional, Conditions, Measure, Question};
 use crate::store::Database;
 use crate::vehicle::Vehicle;
 use crate::words::Named;
@@ -72,7 +72,7 @@ pub(in super::super) fn decision_html(
         read_by: read.map_or_else(String::new, |run| run.netcert_version.clone()),
         measurements: region.read(Database::register)?.entries.len(),
         at: None,
-        conditions_sought: ask.parameter("conditions") != Some("none"),
+        conditions: conditions(ask)?,
         strips: [policy, widest],
     };
     let (roads, fields, style) = (region.roads()?, CaseFields::default(), SheetStyle::At(SHEET_STYLE_AT));
@@ -170,7 +170,7 @@ fn planned(
     let sets = strips.iter().map(|&policy| region.certified(&vehicle.id, policy)).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<&str> = strips.iter().map(|policy| policy.name()).collect();
     let key = format!("{} {} {measure:?}", vehicle.id, names.join(" "));
-    let question = format!("{key} {:?} {} {}", ride.question, ride.drives, ride.conditions);
+    let question = format!("{key} {:?} {} {:?}", ride.question, ride.drives, ride.conditions);
     planners.planned.get(&question, || {
         let router = planners.routers.get(&key, || Router::start(region, &sets, measure))?;
         let Some(answer) = router.ask(ride) else {
@@ -200,16 +200,33 @@ fn strips(region: &RegionState, ask: &DecodedRequest, id: &str, base: Policy) ->
     if !has_turns(base) {
         return Err(missing(base));
     }
-    let Some(top) = ask.parameter("at_most").map(|word| one_of("at_most", word)).transpose()? else {
-        return Ok(vec![base]);
+    let top = match at_most(ask)? {
+        None => return Ok(vec![base]),
+        // As wide as the database allows.
+        Some(AtMost::Attested) => Policy::Carriageway,
+        Some(top) if top.strip() <= base => {
+            return Err(Problem::parameter(
+                "at_most",
+                "name a policy that is wider than `policy`, or `attested`, or leave it out",
+            ));
+        }
+        Some(top) if !has_turns(top.strip()) => return Err(missing(top.strip())),
+        Some(top) => top.strip(),
     };
-    if top <= base {
-        return Err(Problem::parameter("at_most", "name a policy that is wider than `policy`, or leave it out"));
-    }
-    if !has_turns(top) {
-        return Err(missing(top));
-    }
     Ok(Policy::ALL.iter().copied().filter(|&policy| policy >= base && policy <= top && has_turns(policy)).collect())
+}
+
+fn at_most(ask: &DecodedRequest) -> Result<Option<AtMost>, Problem> {
+    ask.parameter("at_most").map(|word| one_of("at_most", word)).transpose()
+}
+
+/// Where a route may have conditions.
+fn conditions(ask: &DecodedRequest) -> Result<Conditions, Problem> {
+    match ask.parameter("conditions").unwrap_or("search") {
+        "search" => Ok(at_most(ask)?.map_or(Conditions::Anywhere, AtMost::conditions)),
+        "none" => Ok(Conditions::Nowhere),
+        _ => Err(Problem::parameter("conditions", "give search or none")),
+    }
 }
 
 fn ride(ask: &DecodedRequest) -> Result<RouteQuestion, Problem> {
@@ -229,11 +246,7 @@ fn ride(ask: &DecodedRequest) -> Result<RouteQuestion, Problem> {
         "none" => 0,
         _ => return Err(Problem::parameter("drive", "give best, all or none")),
     };
-    let conditions = match ask.parameter("conditions").unwrap_or("search") {
-        "search" => true,
-        "none" => false,
-        _ => return Err(Problem::parameter("conditions", "give search or none")),
-    };
+    let conditions = conditions(ask)?;
     let snap_m = ask.number("snap", 0.0, 5000.0)?.unwrap_or(SNAP_M);
     let tries = ask.whole("tries", 0..=30)?.unwrap_or(TRIES) as usize;
     let question = Question { places, snap_m, alternatives, tries };

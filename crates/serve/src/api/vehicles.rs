@@ -14,8 +14,9 @@ use crate::words::Named;
 /// `/api/vehicles`
 pub(in super::super) fn list(region: &RegionState, ask: &DecodedRequest) -> Result<StoredAnswer, Problem> {
     ask.only(&[])?;
-    let vehicles: Vec<Value> = region.vehicles.iter().map(|vehicle| members(region, vehicle)).collect();
-    Ok(answered(&json!(vehicles)))
+    let vehicles: Result<Vec<Value>, Problem> =
+        region.vehicles.iter().map(|vehicle| members(region, vehicle)).collect();
+    Ok(answered(&json!(vehicles?)))
 }
 
 /// `/api/vehicles/{id}/drawing.svg`
@@ -25,12 +26,13 @@ pub(in super::super) fn drawing(region: &RegionState, ask: &DecodedRequest) -> R
     Ok(StoredAnswer::new(SVG, picture::vehicle(vehicle).into_bytes()))
 }
 
-fn members(region: &RegionState, vehicle: &Vehicle) -> Value {
+fn members(region: &RegionState, vehicle: &Vehicle) -> Result<Value, Problem> {
     let policies = region.policies(&vehicle.id);
     let certified: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
     let turns: Vec<&str> = policies.iter().filter(|(_, turns)| *turns).map(|(policy, _)| policy.name()).collect();
     let units: Vec<Value> = vehicle.units.iter().enumerate().map(|(i, u)| unit(vehicle, i, u)).collect();
-    json!({
+    let may_be_attested = region.read(|database| database.may_be_attested(&vehicle.id))?;
+    Ok(json!({
         "id": vehicle.id,
         "name": vehicle.name,
         "region": vehicle.region,
@@ -45,8 +47,9 @@ fn members(region: &RegionState, vehicle: &Vehicle) -> Value {
         "source": vehicle.source,
         "certified": certified,
         "turns_certified": turns,
+        "may_be_attested": may_be_attested,
         "units": units,
-    })
+    }))
 }
 
 /// The members of one unit. Its body reaches `coupling_to_axle_m` + `front_overhang_m` ahead of its axle and

@@ -41,6 +41,21 @@ impl Database {
         Ok(all)
     }
 
+    /// Whether a vehicle may be attested somewhere: a designation names it, whether or not a road here has that designation, or the register does.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn may_be_attested(&mut self, vehicle: &str) -> Result<bool, StoreError> {
+        if Designations::builtin().all().iter().any(|designation| designation.vehicles.iter().any(|id| id == vehicle)) {
+            return Ok(true);
+        }
+        self.session.run(async |c| {
+            let sql = "SELECT EXISTS (SELECT 1 FROM evidence WHERE quantity = 'drivable_by' AND state = 'matched' AND vehicle = ?)";
+            let row: Sql<bool> = sqlx::query_scalar(sql).bind(vehicle).fetch_one(c).await;
+            row
+        })
+    }
+
     /// The vehicles that are attested to go somewhere, by id.
     ///
     /// # Errors
