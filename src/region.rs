@@ -150,6 +150,12 @@ impl Region {
         Ok(Self { path: path.to_owned(), database: Database::open(path)?, roads: None })
     }
 
+    /// The region with roads that were loaded from the same file before.
+    #[must_use]
+    pub fn with_roads(self, roads: &Arc<Roads>) -> Self {
+        Self { roads: Some(Arc::clone(roads)), ..self }
+    }
+
     /// From now on, queries and routes give the verdicts at this time, which is local time of the place. Without it, a road that is closed to
     /// the vehicle at some times is `unknown: time`. Explanations know no time.
     ///
@@ -234,18 +240,31 @@ impl Region {
         top: Policy,
         measure: Measure,
     ) -> Result<Planner, RegionError> {
-        let mut drivers = vec![self.driver(vehicle, policy)?];
+        let narrowest = self.driver(vehicle, policy)?;
+        let mut wider = Vec::new();
         for &between in Policy::ALL.iter().filter(|between| **between > policy && **between < top) {
             if self.database.has_turns(vehicle, between)? {
-                drivers.push(self.driver(vehicle, between)?);
+                wider.push(between);
             }
         }
-        if top > policy {
-            drivers.push(self.driver(vehicle, top)?);
-        }
+        wider.extend((top > policy).then_some(top));
+        let ladder = self.ladder(&narrowest, &wider)?;
         let roads = self.roads()?;
-        let ladder = Ladder::new(&drivers, &roads.movements)?;
         Ok(Planner::climbing(&roads, &ladder, &Speeds::builtin()?, measure, &RungPrices::builtin()?))
+    }
+
+    /// The ladder of a vehicle from the policy of its permits over wider ones.
+    ///
+    /// # Errors
+    /// The vehicle's edges or turns are not certified under one of the policies, or with different settings; the file cannot be read.
+    pub fn ladder(&mut self, narrowest: &Arc<Driver>, wider: &[Policy]) -> Result<Ladder, RegionError> {
+        let roads = self.roads()?;
+        let mut drivers = vec![Arc::clone(narrowest)];
+        for &policy in wider {
+            let (set, _) = self.certified(&narrowest.model.vehicle.id, policy)?;
+            drivers.push(narrowest.with_set(&mut self.database, &roads, &set)?);
+        }
+        Ok(Ladder::new(&drivers, &roads.movements)?)
     }
 
     /// The widest policy under which a vehicle's turns are certified, if it is wider than `policy`. Else `policy`.

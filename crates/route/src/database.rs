@@ -11,7 +11,7 @@ use super::relative::{Peer, Standings};
 use super::roads::Roads;
 use crate::network::{EdgeNo, Movements, Network};
 use crate::osm::facts::Policy;
-use crate::rows::{CertificateStanding, TurnStep};
+use crate::rows::CertificateStanding;
 use crate::stet::{Model, ModelError};
 use crate::store::{CertifiedSet, Database, Reference, StoreError};
 use crate::vehicle::Vehicle;
@@ -40,10 +40,10 @@ impl Permits {
                 *slot = Permit { verdict, rsc_m };
             }
         }
-        let of_turn = |step: TurnStep| ((step.from, step.to), Permit { verdict: step.verdict, rsc_m: step.rsc_m });
-        let turns = database.turn_steps(vehicle, policy)?.map(|step| Ok(of_turn(step?)));
-        let turns: FxHashMap<(EdgeNo, EdgeNo), Permit> = turns.collect::<Result<_, StoreError>>()?;
-        let turn = |from, to| turns.get(&(from, to)).copied().unwrap_or(Permit::UNKNOWN);
+        let turns = database.turn_conclusions(vehicle, policy)?;
+        let turns = turns.map(|row| row.map(|(ends, verdict, rsc_m)| (ends, Permit { verdict, rsc_m })));
+        let turns: FxHashMap<[EdgeNo; 2], Permit> = turns.collect::<Result<_, StoreError>>()?;
+        let turn = |from, to| turns.get(&[from, to]).copied().unwrap_or(Permit::UNKNOWN);
         Ok(Self::new(settings, edges, movements, turn))
     }
 }
@@ -70,10 +70,34 @@ impl Driver {
         vehicle: &Vehicle,
         set: &CertifiedSet,
     ) -> Result<Arc<Self>, NoDriver> {
-        let mut permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
-        permits.add_rules(&roads.network, &roads.movements, vehicle);
+        let permits = Self::permits(database, roads, vehicle, set)?;
         let attested = Attested::new(&database.attestations(&vehicle.id)?);
         Ok(Arc::new(Self { model: Model::new(vehicle)?, permits, attested }))
+    }
+
+    /// The same vehicle with the permits of another of its sets in the same database.
+    ///
+    /// # Errors
+    /// The set's turns are not certified, or its settings cannot be read.
+    pub fn with_set(
+        &self,
+        database: &mut Database,
+        roads: &Roads,
+        set: &CertifiedSet,
+    ) -> Result<Arc<Self>, StoreError> {
+        let permits = Self::permits(database, roads, &self.model.vehicle, set)?;
+        Ok(Arc::new(Self { model: self.model.clone(), permits, attested: self.attested.clone() }))
+    }
+
+    fn permits(
+        database: &mut Database,
+        roads: &Roads,
+        vehicle: &Vehicle,
+        set: &CertifiedSet,
+    ) -> Result<Permits, StoreError> {
+        let mut permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
+        permits.add_rules(&roads.network, &roads.movements, vehicle);
+        Ok(permits)
     }
 }
 

@@ -15,6 +15,7 @@ use crate::route::{
     SnapError, Speeds, Unanswered,
 };
 use crate::stop::Stop;
+use crate::store::Database;
 use crate::words::{Named as _, verdict_words};
 use serde_json::{Value, json};
 
@@ -91,14 +92,24 @@ impl Router {
     ) -> Result<Self, Problem> {
         let fault = |error: &dyn std::fmt::Display| Problem::fault(error.to_string());
         let roads = Arc::clone(&region.roads()?.roads);
-        let mut drivers = Vec::with_capacity(sets.len());
+        let mut drivers: Vec<Arc<Driver>> = Vec::with_capacity(sets.len());
         for certified in sets {
-            let driver =
-                region.read(|database| match Driver::stored(database, &roads, certified.vehicle, certified.set) {
-                    Err(NoDriver::Store(error)) => Err(error),
-                    driver => Ok(driver),
-                })?;
-            drivers.push(driver.map_err(|error| fault(&error))?);
+            let driver = match drivers.first() {
+                Some(first) => region.read(|database| first.with_set(database, &roads, certified.set))?,
+                None => {
+                    let stored = |database: &mut Database| match Driver::stored(
+                        database,
+                        &roads,
+                        certified.vehicle,
+                        certified.set,
+                    ) {
+                        Err(NoDriver::Store(error)) => Err(error),
+                        driver => Ok(driver),
+                    };
+                    region.read(stored)?.map_err(|error| fault(&error))?
+                }
+            };
+            drivers.push(driver);
         }
         let ladder = match drivers.len() {
             0 | 1 => None,

@@ -53,7 +53,7 @@ pub use results::relative::{
     ATTESTED, DRIVABLE_BY, IndexedStanding, Reference, ReferenceCertificates, ReferenceReader, VehicleSettings,
 };
 pub use results::settings::CertifiedSet;
-pub use results::stream::{EdgeConclusion, StraightOn};
+pub use results::stream::{EdgeConclusion, StraightOn, TurnConclusion};
 pub use results::turns::{TurnQuery, TurnSet};
 pub use roads::junctions::MapJunction;
 pub use roads::map::TurnsOf;

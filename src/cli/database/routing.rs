@@ -99,20 +99,20 @@ impl RoutingInputs {
                 "--at-most {top}: the certificates are of the {base} policy already; name a wider one, or run without --at-most"
             );
         }
-        let mut drivers = vec![Arc::clone(&self.driver)];
-        for &policy in Policy::ALL.iter().filter(|policy| **policy > settings.policy && **policy <= top) {
+        let wider: Vec<Policy> =
+            Policy::ALL.iter().copied().filter(|&policy| policy > settings.policy && policy <= top).collect();
+        for &policy in &wider {
             let required = vehicle.required(Some(policy), Coverage::EdgesAndTurns, command);
             let like = Settings { policy, ..settings.clone() };
             let database = Database::open(&self.path)?;
             let (database, _) = on_demand::certified_with(session, &self.path, database, &required, &like)?;
             database.close()?;
-            let mut region = Region::open(&self.path)?;
-            if let Some(time) = self.at {
-                region.set_time(time)?;
-            }
-            drivers.push(region.driver(&vehicle.id, policy)?);
         }
-        Ok(Ladder::new(&drivers, &self.roads.movements)?)
+        let mut region = Region::open(&self.path)?.with_roads(&self.roads);
+        if let Some(time) = self.at {
+            region.set_time(time)?;
+        }
+        Ok(region.ladder(&self.driver, &wider)?)
     }
 
     pub(crate) fn graph(&self, measure: Measure) -> Graph {

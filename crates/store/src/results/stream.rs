@@ -26,6 +26,9 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// An edge with its verdict and its RSC, metres, if it was computed.
 pub type EdgeConclusion = (EdgeNo, Verdict, Option<f64>);
 
+/// The first and the last edge of a turn with its verdict and its RSC, metres, if it was computed.
+pub type TurnConclusion = ([EdgeNo; 2], Verdict, Option<f64>);
+
 /// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
 pub type StraightOn = (EdgeNo, Option<EdgeNo>);
 
@@ -68,6 +71,22 @@ impl Database {
                    WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
                    ORDER BY c.fid";
         Ok(self.streamed(sql.to_owned(), vehicle, policy, turn_step))
+    }
+
+    /// The verdict and RSC of every turn for a vehicle. There are no rows if its turns are not certified: see [`Database::has_turns`].
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_conclusions(
+        &mut self,
+        vehicle: &str,
+        policy: Policy,
+    ) -> Result<RowStream<'_, TurnConclusion>, StoreError> {
+        let sql = "SELECT t.from_fid, t.to_fid, c.verdict_no, c.rsc_mm \
+                   FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+                   WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
+                   ORDER BY c.fid";
+        Ok(self.streamed(sql.to_owned(), vehicle, policy, turn_conclusion))
     }
 
     /// The narrowest strip on which each safe edge is safe, whatever the policy under which it is asked for.
@@ -146,6 +165,12 @@ fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
 fn edge_conclusion(row: &SqliteRow) -> Sql<EdgeConclusion> {
     let fid: u32 = row.try_get(0)?;
     Ok((edge_of(fid), verdict(row, 1, || format!("edge {fid}"))?, metres(row, 2)?))
+}
+
+fn turn_conclusion(row: &SqliteRow) -> Sql<TurnConclusion> {
+    let ends: [u32; 2] = [row.try_get(0)?, row.try_get(1)?];
+    let of = || format!("the turn from edge {} into edge {}", ends[0], ends[1]);
+    Ok((ends.map(edge_of), verdict(row, 2, of)?, metres(row, 3)?))
 }
 
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
