@@ -1,5 +1,7 @@
 //! Routes under conditions: where no route is certified outright, the search for the way with the fewest and smallest conditions.
 
+use std::sync::Arc;
+
 use super::assemble::{DrivenWay, PartKind};
 use super::at_most::Conditions;
 use super::conditions::{
@@ -9,8 +11,6 @@ use super::drive::Drive;
 use super::graph::BARRED;
 use super::obstacles::Refutation;
 use super::plan::{Planner, Question, Unanswered};
-use super::route::Route;
-use super::search::FoundWay;
 use super::snap::Snapped;
 use crate::network::EdgeNo;
 use crate::stop::{Stop, Stopped};
@@ -62,8 +62,9 @@ impl Planner {
         let snap = |place| self.snapper.snap(place, question.snap_m, open);
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
         searching();
+        let climbing = || self.below.as_ref().map(|below| Arc::clone(&below.climbing));
         let kept = self.fitter.take();
-        let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
+        let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver, climbing())));
         let mut left = WAYS.min(question.tries.max(1));
         let mut answer = self.fit(&mut fitter, &mut left, snapped.clone(), first, stop);
         // What nothing opens on one way may be open on another, with other roads before and behind it.
@@ -103,8 +104,8 @@ impl Planner {
                     match access.not_allowed(self.graph.roads(), &found.drive, &conditions) {
                         Some(places) => places,
                         None => {
-                            let suffices = fitted.suffices;
-                            let route = self.fitted_route(fitter, &found, [start, end], fitted, stop)?;
+                            let Fitted { certified, suffices, .. } = fitted;
+                            let route = self.route(&found, start, end, certified);
                             return Ok(Ok(Conditional { route, conditions, suffices, snapped }));
                         }
                     }
@@ -133,23 +134,5 @@ impl Planner {
         let mut conditions = supposed.conditions(self.network(), kerbs, &drive.edges);
         tell_who_attests(&self.driver.attested, self.network(), drive, &mut conditions);
         conditions
-    }
-
-    /// The route on a way that fits. It climbs if the planner knows a ladder.
-    fn fitted_route(
-        &self,
-        fitter: &mut Fitter,
-        found: &FoundWay,
-        [start, end]: [f64; 2],
-        fitted: Fitted,
-        stop: &Stop,
-    ) -> Result<Route, Stopped> {
-        let Fitted { supposed, choices, mut certified, .. } = fitted;
-        if let Some(below) = &self.below {
-            let way = DrivenWay { drive: &found.drive, start, end };
-            let climbed = fitter.climbed(&way, &supposed, &choices, &below.climbing, stop)?;
-            certified = climbed.unwrap_or(certified);
-        }
-        Ok(self.route(found, start, end, certified))
     }
 }

@@ -107,7 +107,8 @@ impl Whole {
         let differing: Vec<EdgeNo> = known.above(&rungs).into_iter().chain(rungs.above(known)).collect();
         self.put_rungs(rungs, &differing);
         let mut judged = Judged::default();
-        for _ in 0..most_raised {
+        let mut raised = 0;
+        loop {
             // The place that refutes the way, and what is missing there, metres.
             let (refutation, missing_m) = match self.joined(way, stop)? {
                 Err(refutation) => (refutation, f32::MAX),
@@ -125,8 +126,12 @@ impl Whole {
                         }
                         judged.put(of_parts);
                     }
+                    if raised == most_raised {
+                        return Ok(Err(refutation.unwrap_or_else(|| worst(&judged.parts))));
+                    }
                     let times = if looked_safe { AFTER_CERTIFICATE } else { AFTER_LOOK };
                     if self.raise(|rungs, network| rungs.raise_failing(network, &judged.parts, times)) {
+                        raised += 1;
                         continue;
                     }
                     let refutation = refutation.unwrap_or_else(|| worst(&judged.parts));
@@ -138,11 +143,11 @@ impl Whole {
                 }
             };
             let at = refutation.at;
-            if !self.raise(|rungs, network| rungs.raise(network, way.drive, at, missing_m)) {
+            if raised == most_raised || !self.raise(|rungs, network| rungs.raise(network, way.drive, at, missing_m)) {
                 return Ok(Err(refutation));
             }
+            raised += 1;
         }
-        self.certify(way, stop)
     }
 
     /// Forgets the turns near edges, and near nodes at these positions.

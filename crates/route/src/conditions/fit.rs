@@ -220,24 +220,29 @@ impl Fitter {
         Ok(false)
     }
 
-    /// The way under what is supposed, if it is safe when everything is made anew.
+    /// The way under what is supposed, if it is safe when everything is made anew: on strips that are as narrow as they can be, if the vehicle
+    /// climbs, or else on the widest one.
     pub(super) fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<CertifiedWay>, Stopped> {
         fitting.supposed.apply(network_of(&mut self.roads));
-        let mut fresh = self.new_whole();
         let way = DrivenWay { drive: &fitting.drive, start: fitting.start, end: fitting.end };
-        fresh.prove(&way, &fitting.choices, stop)
+        if let Some(climbing) = &self.climbing {
+            let climbed = self.climbed(&way, &fitting.supposed, &fitting.choices, climbing, stop)?;
+            if climbed.is_some() {
+                return Ok(climbed);
+            }
+        }
+        self.new_whole().prove(&way, &fitting.choices, stop)
     }
 
-    /// The way under what is supposed, on strips that are as narrow as they can be. `None` if the way is safe on the widest strip alone.
-    pub(crate) fn climbed(
-        &mut self,
+    /// The way on strips that are as narrow as they can be. `None` if it is not safe on these.
+    fn climbed(
+        &self,
         way: &DrivenWay<'_>,
         supposed: &Suppositions,
         choices: &Choices,
         climbing: &Arc<Driver>,
         stop: &Stop,
     ) -> Result<Option<CertifiedWay>, Stopped> {
-        supposed.apply(network_of(&mut self.roads));
         let mut whole = Self::whole_of(&self.roads, climbing);
         // Along all of a long road the widest strip is more than its corner needs. Where that does not do soon, it seldom does at all.
         for (roads, most_raised) in [(WidestRoads::Wider, FIRST_RAISED), (WidestRoads::OfSections, MOST_RAISED)] {

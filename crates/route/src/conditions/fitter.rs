@@ -18,6 +18,8 @@ use crate::whole::{CertifiedWay, Whole};
 pub(crate) struct Fitter {
     pub(super) roads: Arc<Roads>,
     pub(super) driver: Arc<Driver>,
+    /// The vehicle as it climbs, if it does.
+    pub(super) climbing: Option<Arc<Driver>>,
     pub(super) base: Arc<network::Site>,
     pub(super) stroke_of: Arc<[u32]>,
     /// The widths that edges need.
@@ -46,8 +48,6 @@ pub(crate) struct Fitted {
     pub(crate) drive: Drive,
     pub(crate) certified: CertifiedWay,
     pub(crate) supposed: Suppositions,
-    /// The paths of turns.
-    pub(crate) choices: Choices,
     /// Whether the search with nothing supposed finds the same, once everything is measured exactly as supposed.
     pub(crate) suffices: bool,
 }
@@ -82,7 +82,7 @@ impl Fitting {
 
     /// The way as it is certified, where measurements exactly as supposed suffice.
     pub(super) fn fitted(self, certified: CertifiedWay) -> Fitted {
-        Fitted { drive: self.drive, certified, supposed: self.supposed, choices: self.choices, suffices: true }
+        Fitted { drive: self.drive, certified, supposed: self.supposed, suffices: true }
     }
 
     /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.
@@ -95,10 +95,11 @@ impl Fitting {
 }
 
 impl Fitter {
-    pub(crate) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
+    /// A fitter for a vehicle with the permits of its widest strip. With `climbing`, ways keep to strips that are as narrow as they can be.
+    pub(crate) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>, climbing: Option<Arc<Driver>>) -> Self {
         let base = Arc::new(roads.network.site.clone());
         let stroke_of = roads.network.strokes_of_edges().into();
-        Self::beside(roads, driver, base, stroke_of)
+        Self { climbing, ..Self::beside(roads, driver, base, stroke_of) }
     }
 
     /// A fitter that knows nothing yet, on roads whose known site is `base`.
@@ -111,6 +112,7 @@ impl Fitter {
         Self {
             roads: Arc::clone(roads),
             driver: Arc::clone(driver),
+            climbing: None,
             base,
             stroke_of,
             needs_m: FxHashMap::default(),
